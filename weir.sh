@@ -1,27 +1,27 @@
 #!/usr/bin/env bash
-# weir's front door: ./weir.sh COMMAND [...]
+# Entry point of weir: ./weir.sh COMMAND [...]
 #   build               everything, with tests and benchmarks
 #   run SCENE [...]     simulate a scene, or a case by its name
 #   view RESULT         the frames of a run in a window
-#   live SCENE          a scene in a window, with a hand in it
+#   live SCENE          a scene in a window, with interactive forcing
 #   picture RESULT      the frames of a run as a PNG
-#   movie RESULT        the frames of a run as a film; of a scene or a case, which it runs first
+#   movie RESULT        the frames of a run as a movie; a scene or a case is run first
 #   validate [...]      the claims of the cases
-#   cost [...]          error against computing time; --plan SCENE: what a scene will cost
-#   plan CASE [...]     which setting to take: --budget 16ms --error 2%
-#   stability [...]     where solvers break
+#   cost [...]          error against computing time; --plan SCENE: estimate of a scene's cost
+#   plan CASE [...]     recommended configuration: --budget 16ms --error 2%
+#   stability [...]     stability limits of solvers
 #   report              the page of published results
 #   list WHAT           solvers, effects, cases or devices
-#   describe [WHAT]     what a scene may say
-#   test [...]          all tests; more words go to ctest
+#   describe [WHAT]     what a scene may contain
+#   test [...]          all tests; further arguments go to ctest
 #   lint [WHAT]         warnings of clang 14 over the whole tree, or tidy: the checks of .clang-tidy
-#   fuzz [SECONDS KIND] readers of files that users hand in, fed with damaged ones
+#   fuzz [SECONDS KIND] fuzzing of the readers of users' files
 #   python              the package of Python, in build/release/python
 #   docs                the book as a site, in build/docs/site
 #   install DIR         the program, its cases and the library
 #   package             the Debian packages, for any processor of this kind, in build/package/packages
-# `./weir.sh COMMAND --help` tells more. Each call installs what that command needs and is missing (Debian 12, Ubuntu 24.04), configures, builds what it needs, and does its job; a
-# second call re-does only what changed. The executable is build/release/weir.
+# `./weir.sh COMMAND --help` prints the options. Each call installs the missing packages of that command (Debian 12, Ubuntu 24.04), configures, builds and runs it; a
+# second call repeats only what changed. The executable is build/release/weir.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 

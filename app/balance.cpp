@@ -24,8 +24,9 @@ std::string of_quantity(const sim::Balanced& b) {
     if (std::abs(b.start) > 0) text += fmt::format(", {}", signed_percent((b.end - b.start) / std::abs(b.start)));
     if (b.highest) text += fmt::format("; highest {:.4g}", *b.highest);
     if (b.inflow && std::abs(*b.inflow) > 1e-9 * b.scale) text += fmt::format("; net inflow {:.4g}", *b.inflow);
-    if (!b.unexplained) return text + (b.highest ? "; work is not counted" : b.inflow ? "" : "; what came in and went out is not counted");
-    text += b.highest ? fmt::format(" ({} above the start)", signed_percent(*b.unexplained))
+    if (!b.unexplained)
+        return text + (b.highest ? "; work on the fluid is not counted" : b.inflow ? "" : "; inflow and outflow are not counted");
+    text += b.highest ? fmt::format(" ({} relative to the start)", signed_percent(*b.unexplained))
                       : fmt::format("; unexplained {}", signed_percent(*b.unexplained));
     if (b.furthest && std::abs(*b.furthest) > std::abs(*b.unexplained) + 1e-6)
         text += fmt::format(", at a frame {}", signed_percent(*b.furthest));

@@ -35,8 +35,7 @@ struct CostArguments : StudyArguments<validation::CostOptions> {
 
 /// The network that is named; none: what this machine has.
 std::optional<validation::Link> link_of(const CostArguments& arguments) {
-    if ((arguments.latency > 0) != (arguments.bandwidth > 0))
-        throw BadInput("--latency and --bandwidth describe one network: both are needed");
+    if ((arguments.latency > 0) != (arguments.bandwidth > 0)) throw BadInput("--latency and --bandwidth describe one network: give both");
     if (arguments.latency == 0) return std::nullopt;
     return validation::Link{arguments.latency, arguments.bandwidth, "as given"};
 }
@@ -74,7 +73,7 @@ int cost(CostArguments& arguments) {
     arguments.options.drawn = frames_in_window;
     const auto& options = arguments.chosen();
     if (!arguments.plan.empty()) return forecast(arguments);
-    if (arguments.ranks > 0) throw BadInput("--ranks tells what a scene takes over so many ranks: it needs --plan SCENE");
+    if (arguments.ranks > 0) throw BadInput("--ranks estimates a scene in parallel (MPI): it requires --plan SCENE");
     if (!arguments.effects) return validation::cost_command(options);
     std::vector<std::filesystem::path> folders{arguments.out};
     if (arguments.publish) folders.push_back(arguments.publish_to);
@@ -86,30 +85,32 @@ int cost(CostArguments& arguments) {
 void add_cost(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<CostArguments>();
     auto& options = arguments->options;
-    CLI::App* command = app.add_subcommand("cost", "Measure error against computing time; failures stay in the table");
-    arguments->add_to(*command, "Every ready study (cases/*/cost.toml)", "ci: minutes; full: as published", "Folder of tables and figures");
-    command->add_flag("--report-table", options.report_table, "The figures of the report that began this work, beside ours");
+    CLI::App* command = app.add_subcommand("cost", "Measure error against computing time; failed configurations stay in the table");
+    arguments->add_to(*command, "Run every study (cases/*/cost.toml)", "ci: minutes; full: as published", "Folder of tables and plots");
+    command->add_flag("--report-table", options.report_table, "Table of the earlier report's values beside weir's");
     command->add_option("--solver", options.solver, "Only methods that use this solver");
-    command->add_option("--error", options.error, "Another metric as the error");
-    command->add_option("--vary", options.vary, "key=value,value,...: settings to go through; may be given again")->allow_extra_args(false);
-    command->add_option("--repeat", options.measure.repeats, "Runs of a setting that is quick; the median counts")
+    command->add_option("--error", options.error, "Use this metric as the error");
+    command->add_option("--vary", options.vary, "key=value,value,...: configurations to measure; may be repeated")->allow_extra_args(false);
+    command->add_option("--repeat", options.measure.repeats, "Repeated runs of a short configuration; the median is taken")
         ->check(CLI::Range(1, 99));
-    command->add_option("--time-limit", options.measure.time_limit, "Seconds after which a run counts as failed")
+    command->add_option("--time-limit", options.measure.time_limit, "Time limit of a run [s]; a longer run fails")
         ->check(CLI::PositiveNumber);
     command
         ->add_option("--compare", options.compare,
-                     "Folder of published tables: errors and bytes of the ci size, each setting once; one that moved fails (exit code 1)")
+                     "Folder of published tables: compare errors and bytes at ci size, one run per configuration; a changed value fails "
+                     "(exit code 1)")
         ->check(CLI::ExistingDirectory);
-    command->add_flag("--effects", arguments->effects, "What each effect of each solver costs: effects.csv and effects.md");
+    command->add_flag("--effects", arguments->effects, "Measure the cost of each effect of each solver: effects.csv and effects.md");
     command->add_option("--plan", arguments->plan,
-                        "A scene or a case: its memory and the time of its steps, before it runs; nothing is written");
-    command->add_option("--ranks", arguments->ranks, "With --plan: over so many ranks, their memory, messages and weak scaling")
+                        "Estimate memory and time per step of a scene or a case before it runs; nothing is written");
+    command->add_option("--ranks", arguments->ranks, "With --plan: number of MPI ranks; estimate their memory, messages and weak scaling")
         ->check(CLI::PositiveNumber);
     command
         ->add_option("--latency", arguments->latency,
-                     "With --ranks: of a message between them, in seconds (default: through this machine's memory)")
+                     "With --ranks: latency of a message between ranks [s] (default: measured through this machine's memory)")
         ->check(CLI::PositiveNumber);
-    command->add_option("--bandwidth", arguments->bandwidth, "With --latency: bytes a second")->check(CLI::PositiveNumber);
+    command->add_option("--bandwidth", arguments->bandwidth, "With --latency: bandwidth between ranks [bytes/s]")
+        ->check(CLI::PositiveNumber);
     command->add_option("--set", arguments->set, "With --plan: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
     command->callback([arguments, &exit_code] { exit_code = cost(*arguments); });
 }

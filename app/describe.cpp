@@ -30,14 +30,12 @@ void add_describe(CLI::App& app, int& exit_code) {
     auto topic = std::make_shared<std::vector<std::string>>();
     auto markdown = std::make_shared<bool>(false);
     CLI::App* describe =
-        app.add_subcommand("describe", "Tell what a scene may say: about a solver, an effect, a key, a shape, a motion or a substance");
+        app.add_subcommand("describe", "Describe what a scene may contain: a solver, an effect, a key, a shape, a motion or a substance");
     describe->add_option("topic", *topic,
-                         "A name or a key, such as mac, buoyancy, time.cfl, sphere, substance water; without it: what there is");
-    describe->add_flag("--markdown", *markdown, "The whole manual page, docs/scene.md");
+                         "A name or a key, such as mac, buoyancy, time.cfl, sphere, substance water (default: an overview)");
+    describe->add_flag("--markdown", *markdown, "Print the whole reference of scenes (docs/scene.md)");
     auto of_commands = std::make_shared<std::string>();
-    describe
-        ->add_option("--commands", *of_commands,
-                     "In place of scenes the commands, for whoever installs them: a man page, or completion for bash")
+    describe->add_option("--commands", *of_commands, "Print the man page of the commands, or a completion script for bash")
         ->check(CLI::IsMember({"man", "bash"}));
     describe->callback([topic, markdown, of_commands, &app, &exit_code] {
         const std::string text = *of_commands == "man"    ? man_page(app)

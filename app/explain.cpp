@@ -20,7 +20,7 @@ constexpr int warm_up_steps = 3, measured_steps = 20;
 std::string megabytes(std::size_t bytes) { return fmt::format("{:.3g} MB", static_cast<double>(bytes) / 1e6); }
 
 std::string called_for(const scene::Scene& scene, const scene::SolverSchema& schema) {
-    std::string text = fmt::format("called for\n  solver      {}, {}D", schema.name, scene.dim());
+    std::string text = fmt::format("requested\n  solver      {}, {}D", schema.name, scene.dim());
     if (scene.has("grid.cells")) text += fmt::format(", {} cells", fmt::join(scene.root().numbers("grid.cells"), " x "));
     std::vector<std::string> effects;
     for (const auto& effect : schema.effects)
@@ -47,7 +47,7 @@ std::string fields_text(const Simulation& simulation) {
 
 std::string called(const EffectPlan& effect) {
     std::string text = effect.pass.empty()
-                           ? fmt::format("a term of pass \"{}\"{}", effect.inside, effect.at_start ? ", of its numbers alone" : "")
+                           ? fmt::format("a term of pass \"{}\"{}", effect.inside, effect.at_start ? ", through its coefficients only" : "")
                            : fmt::format("pass \"{}\"", effect.pass);
     if (!effect.fields.empty()) text += fmt::format("; fields {}", fmt::join(effect.fields, ", "));
     if (!effect.scratch.empty()) text += fmt::format("; scratch {}", fmt::join(effect.scratch, ", "));
@@ -103,7 +103,7 @@ std::string passes_text(Simulation& simulation) {
     double total = 0;
     for (const Pass& pass : passes) total += pass.seconds;
     std::sort(passes.begin(), passes.end(), [](const Pass& a, const Pass& b) { return a.seconds > b.seconds; });
-    std::string text = fmt::format("a step, mean of {} after the first {}, {} thread(s)\n", steps, warm_up_steps, threads());
+    std::string text = fmt::format("time per step, mean of {} after the first {}, {} thread(s)\n", steps, warm_up_steps, threads());
     if (steps == 0) return "the scene ends before a step can be measured\n";
     for (const Pass& pass : passes)
         text += fmt::format("  {:22} {:9.3f} ms {:5.1f}%\n", pass.name, 1e3 * pass.seconds / steps, 100 * pass.seconds / total);
@@ -118,14 +118,14 @@ std::string surface_text(const Simulation& simulation) {
     const auto parts = simulation.solver().show_in_parts();
     const auto& mesh = surface->make_part(simulation.fields(), simulation.time());
     const std::size_t cells = begins_of_ranks(mesh.corners.size() + mesh.lines.size()).back();
-    std::string text = fmt::format("a surface by {}, each frame\n", simulation.scene().text("output.surface.method"));
+    std::string text = fmt::format("surface reconstruction by {}, per frame\n", simulation.scene().text("output.surface.method"));
     for (const Pass& pass : surface->passes().list()) text += fmt::format("  {:22} {:9.3f} ms\n", pass.name, 1e3 * pass.seconds);
     return text + fmt::format("  {:22} {:9} {:>12} {} {:>8}\n", "all", "", cells, simulation.scene().dim() == 2 ? "lines" : "triangles",
                               megabytes(surface->bytes()));
 }
 
 std::string left_out(const scene::Scene& scene, const scene::SolverSchema& schema) {
-    std::string text = "not called for, so no field, no pass\n";
+    std::string text = "not requested: no field, no pass\n";
     bool any = false;
     for (const auto& effect : schema.effects)
         if (!scene.effect(effect.name)) text += fmt::format("  {:22} {}\n", effect.name, effect.doc), any = true;

@@ -10,7 +10,7 @@ namespace {
 volatile std::sig_atomic_t count = 0, first = SIGINT, hurries = 0;
 
 extern "C" void count_signal(int signal) {
-    static constexpr char once[] = "\nfinishing the frame; once more: stop after this step; twice more: stop at once\n";
+    static constexpr char once[] = "\ninterrupted: finishing this frame; a second interrupt stops after this step, a third at once\n";
     count = count + 1;
     if (count == 1) first = signal == SIGTERM ? SIGTERM : SIGINT;
     if (count == 1 && hurries && signal != SIGUSR1) count = 2;

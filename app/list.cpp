@@ -54,14 +54,12 @@ void list_devices() {
 void add_list(CLI::App& app, int& exit_code) {
     auto what = std::make_shared<std::string>();
     auto folder = std::make_shared<std::string>(validation::case_root().string());
-    CLI::App* list =
-        app.add_subcommand("list",
-                           "List the solvers, the effects of each, the fields and integrals that each shows, the cases (* where they are "
-                           "validated), or the devices");
+    CLI::App* list = app.add_subcommand(
+        "list", "List the solvers, their effects, their fields and integrals, the cases (* where they are validated), or the devices");
     list->add_option("what", *what, "solvers, effects, fields, cases or devices")->required()->check(CLI::IsMember(listed));
     list->add_option("--cases", *folder, "Folder of the cases");
     auto markdown = std::make_shared<bool>(false);
-    list->add_flag("--markdown", *markdown, "Of fields: docs/fields.md");
+    list->add_flag("--markdown", *markdown, "Print the reference of fields (docs/fields.md)");
     list->callback([what, folder, markdown, &exit_code] {
         exit_code = exit_success;
         if (*what == "solvers") list_solvers();

@@ -35,7 +35,7 @@ std::vector<std::string> with_scene(std::vector<std::string> words) {
 }  // namespace
 
 void add_live(CLI::App& app, int&) {
-    CLI::App* live = app.add_subcommand("live", "Run a scene in a window and push its fluid by hand; keep what was done as a scene");
+    CLI::App* live = app.add_subcommand("live", "Run a scene in a window with interactive forcing; the session is saved as a scene");
     live->prefix_command();
     live->set_help_flag();
     live->callback([live] { hand_over("weir live", "weir-live", with_scene(live->remaining())); });

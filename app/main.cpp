@@ -29,7 +29,7 @@ std::string version_text() {
 
 int run(int argc, char** argv) {
     int exit_code = weir::exit_success;
-    CLI::App app("Fluid simulation: every real-time method, each proved and priced", "weir");
+    CLI::App app("Fluid simulation by real-time methods, with verified accuracy and measured cost", "weir");
     app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
     app.failure_message(CLI::FailureMessage::help);
@@ -66,7 +66,7 @@ void join_ranks(int argc, char** argv) {
     if (weir::distributed::started_ranks() <= 1) return;
     if (argc > 1 && std::strcmp(argv[1], "run") == 0) return weir::distributed::join();
     if (weir::distributed::started_rank() > 0) std::exit(weir::exit_bad_input);
-    throw weir::BadInput("only weir run goes over ranks: start anything else once");
+    throw weir::BadInput("only weir run works in parallel (MPI): start any other command as one process");
 }
 
 /// What was printed has arrived, or the run has failed: a full disk is no success.
@@ -93,7 +93,7 @@ void bound_spinning(char** argv) {
 void require_threads() {
     const char* given = std::getenv("OMP_NUM_THREADS");
     if (given && omp_get_max_threads() > weir::most_threads)
-        throw weir::BadInput(std::string("OMP_NUM_THREADS=") + given + ": a number of threads is 1 to " +
+        throw weir::BadInput(std::string("OMP_NUM_THREADS=") + given + ": expected a number of threads from 1 to " +
                              std::to_string(weir::most_threads));
 }
 
@@ -115,9 +115,9 @@ int guarded_run(int argc, char** argv) {
     } catch (const std::system_error& error) {  // standard output is full or gone
         return complain((std::string("cannot write: ") + error.what()).c_str(), weir::exit_bad_input);
     } catch (const std::bad_alloc&) {
-        return complain("not enough memory: choose fewer cells", weir::exit_bad_input);
+        return complain("not enough memory: reduce grid.cells", weir::exit_bad_input);
     } catch (const std::exception& error) {
-        return complain((std::string("a mistake in weir itself: ") + error.what()).c_str(), 70);  // EX_SOFTWARE of sysexits.h
+        return complain((std::string("internal error of weir: ") + error.what()).c_str(), 70);  // EX_SOFTWARE of sysexits.h
     }
 }
 

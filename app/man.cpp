@@ -53,15 +53,15 @@ std::string entry(const std::string& term, const std::string& text) { return ".T
 
 std::string man_page(const CLI::App& app) {
     const auto machine = output::this_machine();
-    std::string page = ".TH WEIR 1 \"\" \"weir " + machine.version +
-                       "\" \"User Commands\"\n.SH NAME\nweir \\- fluid simulation: every real\\-time method, each proved and priced\n";
-    page +=
-        ".SH SYNOPSIS\n.B weir\n.I COMMAND\n.RI [ OPTION ...]\n.SH DESCRIPTION\n" +
-        roff(
-            "Simulates fluids by the methods of real-time graphics, from scenes in TOML files; judges their claims against references; and "
-            "measures what accuracy costs. A scene is named by its file, by its folder, or, where there is no such file, as a case by its "
-            "name.") +
-        "\n.SH COMMANDS\n";
+    std::string page =
+        ".TH WEIR 1 \"\" \"weir " + machine.version +
+        "\" \"User Commands\"\n.SH NAME\nweir \\- fluid simulation by real\\-time methods, with verified accuracy and measured cost\n";
+    page += ".SH SYNOPSIS\n.B weir\n.I COMMAND\n.RI [ OPTION ...]\n.SH DESCRIPTION\n" +
+            roff(
+                "Simulates fluids by the methods of real-time graphics, from scenes in TOML files; verifies and validates their results "
+                "against references; and measures the cost of accuracy. A scene is given as a file, as a folder, or, where no such file "
+                "exists, as the name of a case.") +
+            "\n.SH COMMANDS\n";
     for (const CLI::App* command : app.get_subcommands({})) {
         page += ".SS " + roff(synopsis(*command)) + "\n" + roff(command->get_description()) + "\n";
         for (const bool positional : {true, false})
@@ -69,13 +69,13 @@ std::string man_page(const CLI::App& app) {
                 if (option != command->get_help_ptr())
                     page += entry(positional ? option->get_single_name() : spelled(*option), option->get_description());
     }
-    page += ".SH EXIT STATUS\n" + entry("0", "Success.") + entry("1", "A claim failed, or nothing reaches what was asked for.") +
-            entry("2", "Bad input, or output that cannot be written; nothing was run.") +
-            entry("3", "A run failed in its numbers; its last good state is kept.") +
-            entry("130, 143", "Interrupted, terminated; what was written stays readable.");
-    page += ".SH ENVIRONMENT\n" + entry("OMP_NUM_THREADS", "Threads at most; results do not depend on it.");
-    return page + ".SH FILES\n" + entry("/usr/share/weir/cases", "The cases: scenes, claims and what they are compared with.") +
-           entry("/usr/share/weir/results/cost", "The tables that weir plan chooses from.");
+    page += ".SH EXIT STATUS\n" + entry("0", "Success.") + entry("1", "A claim failed, or no configuration meets the request.") +
+            entry("2", "Invalid input, or output that cannot be written; nothing was run.") +
+            entry("3", "Numerical failure of a run; its last good state is saved.") +
+            entry("130, 143", "Interrupted or terminated; the files written so far stay readable.");
+    page += ".SH ENVIRONMENT\n" + entry("OMP_NUM_THREADS", "Maximum number of threads; results do not depend on it.");
+    return page + ".SH FILES\n" + entry("/usr/share/weir/cases", "The cases: scenes, claims and reference data.") +
+           entry("/usr/share/weir/results/cost", "The published tables from which weir plan chooses.");
 }
 
 std::string bash_completion(const CLI::App& app) {

@@ -42,8 +42,8 @@ std::string Measured::text() {
         const std::string unit = validation::unit_of(name, watch_.record());
         text += fmt::format("{} = {:.6g}{}{}\n", name, all.at(name), unit.empty() ? "" : " ", unit);
     }
-    return text +
-           fmt::format("{:.4g} ms of computing a step, {:.4g} s a simulated second\n", all.at("ms_per_step"), all.at("seconds_per_second"));
+    return text + fmt::format("{:.4g} ms of computing per step, {:.4g} s per simulated second\n", all.at("ms_per_step"),
+                              all.at("seconds_per_second"));
 }
 
 }  // namespace weir::app

@@ -89,7 +89,7 @@ class Workshop {
 public:
     explicit Workshop(const std::filesystem::path& film) : ending_(film.extension()) {
         std::string pattern = film.string() + ".XXXXXX";
-        if (!mkdtemp(pattern.data())) throw OutputError("cannot make a folder beside " + film.string() + ": " + std::strerror(errno));
+        if (!mkdtemp(pattern.data())) throw OutputError("cannot create a folder beside " + film.string() + ": " + std::strerror(errno));
         folder_ = pattern;
     }
     ~Workshop() {
@@ -134,12 +134,13 @@ void refuse_foreign_poster(const std::filesystem::path& film) {
     std::error_code ignored;
     if (std::filesystem::symlink_status(poster, ignored).type() == std::filesystem::file_type::not_found) return;
     if (std::filesystem::is_directory(poster, ignored) || output::was_made_as(poster, of_a_film)) return;
-    throw BadInput(poster.string() + ": the poster of " + film.string() +
-                   " would replace this file, which is no poster of an earlier film: give the film another name, or move the file");
+    throw BadInput(
+        poster.string() + ": the poster of " + film.string() +
+        " would overwrite this file, which is not the poster of an earlier movie: give the movie another name, or move the file");
 }
 
 void refuse_folder(const std::filesystem::path& file) {
-    if (std::filesystem::is_directory(file)) throw BadInput(file.string() + ": this is a folder, and a file is to be written there");
+    if (std::filesystem::is_directory(file)) throw BadInput(file.string() + ": this is a folder; give the name of a file");
 }
 
 void show(std::size_t done, std::size_t all, bool quiet) {
@@ -156,7 +157,7 @@ std::filesystem::path run_of(const MovieArguments& arguments) {
     const std::filesystem::path named = arguments.result;
     const bool is_scene = std::filesystem::is_regular_file(named) || std::filesystem::exists(named / "scene.toml");
     if (std::filesystem::exists(named) && (std::filesystem::exists(named / "run.json") || !is_scene)) {
-        if (!arguments.set.empty()) throw BadInput("--set goes with a scene; " + named.string() + " is the folder of a run");
+        if (!arguments.set.empty()) throw BadInput("--set applies to a scene; " + named.string() + " is the folder of a run");
         return named;
     }
     const auto scene = validation::scene_named(arguments.result);
@@ -171,10 +172,10 @@ std::filesystem::path run_of(const MovieArguments& arguments) {
 
 int film(const MovieArguments& arguments) {
     if (!has_program("ffmpeg"))
-        throw BadInput("weir movie needs ffmpeg, which is not on the PATH: install it (Debian, Ubuntu: apt install ffmpeg)");
+        throw BadInput("weir movie requires ffmpeg, which is not on the PATH: install it (Debian, Ubuntu: apt install ffmpeg)");
     const auto ending = std::filesystem::path(arguments.out).extension();
     if (!arguments.out.empty() && ending != ".mp4" && ending != ".webm")
-        throw BadInput("--out " + arguments.out + ": a film is an .mp4 or a .webm");
+        throw BadInput("--out " + arguments.out + ": expected a name that ends in .mp4 or .webm");
     if (!arguments.out.empty()) refuse_foreign_poster(arguments.out);
     const std::filesystem::path folder = run_of(arguments);
     const scene::Scene scene = scene_of_run(folder);
@@ -202,23 +203,24 @@ int film(const MovieArguments& arguments) {
 
 void add_movie(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<MovieArguments>();
-    CLI::App* movie = app.add_subcommand("movie", "All frames of a run as a film (MP4 or WebM, by ffmpeg), and a poster");
-    movie->add_option("result", arguments->result, "Output folder of a run; or a scene or a case, which is run first, to out/<its name>")
+    CLI::App* movie = app.add_subcommand("movie", "Write all frames of a run as a movie (MP4 or WebM, by ffmpeg), with a poster");
+    movie->add_option("result", arguments->result, "Output folder of a run; or a scene or a case, which is run first into out/<its name>")
         ->required();
-    movie->add_option("--set", arguments->set, "Of a scene: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
-    movie->add_option("--out", arguments->out,
-                      "File to write: .mp4 or .webm (default: RESULT/movie.mp4); the poster beside it, where no other file has its name");
-    movie->add_option("--field", arguments->wish.field, "What is shown, as weir picture");
+    movie->add_option("--set", arguments->set, "For a scene: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
+    movie->add_option(
+        "--out", arguments->out,
+        "File to write: .mp4 or .webm (default: RESULT/movie.mp4); the poster is written beside it unless another file has its name");
+    movie->add_option("--field", arguments->wish.field, "Field shown, as in weir picture");
     movie->add_option("--range", arguments->range,
                       "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: each frame's own)");
     movie
         ->add_option("--surface", arguments->wish.surface,
-                     "How the surface of a liquid is made, with --quality or in 2D (default: as the scene says)")
+                     "Surface reconstruction of a liquid, with --quality or in 2D (default: that of the scene)")
         ->check(CLI::IsMember({"zhu_bridson", "anisotropic", "density", "level_set"}));
     movie->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
         ->check(CLI::Range(32, 8192));
-    movie->add_flag("--quality", arguments->wish.quality, "As a camera would see it, as weir picture --quality");
-    movie->add_option("--rate", arguments->rate, "Frames a second (default: the run's own speed, from 10 to 30)")
+    movie->add_flag("--quality", arguments->wish.quality, "Ray-traced, as weir picture --quality");
+    movie->add_option("--rate", arguments->rate, "Frames per second (default: the speed of the run, from 10 to 30)")
         ->check(CLI::Range(1, 120));
     movie->add_flag("--quiet", arguments->quiet, "No progress bar");
     movie->callback([arguments, &exit_code] {

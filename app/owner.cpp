@@ -31,7 +31,8 @@ void move_away(const std::filesystem::path& checkpoint, bool quiet) {
     std::error_code failed;
     std::filesystem::rename(checkpoint, earlier(checkpoint), failed);
     if (failed) throw OutputError("cannot rename " + checkpoint.string() + ": " + failed.message());
-    if (!quiet) std::fprintf(stderr, "%s is of an earlier run: it is %s now\n", checkpoint.c_str(), earlier(checkpoint).filename().c_str());
+    if (!quiet)
+        std::fprintf(stderr, "%s belongs to an earlier run: renamed to %s\n", checkpoint.c_str(), earlier(checkpoint).filename().c_str());
 }
 
 }  // namespace
@@ -42,7 +43,7 @@ std::unique_ptr<output::FolderLock> lock_folder(const std::filesystem::path& fol
         output::require_writable(folder);
         lock = std::make_unique<output::FolderLock>(folder);
         if (!lock->unlocked().empty())
-            std::fprintf(stderr, "%s: the file system has no locks (%s): nothing keeps a second run out of this folder\n", folder.c_str(),
+            std::fprintf(stderr, "%s: the file system has no locks (%s): do not start a second run into this folder\n", folder.c_str(),
                          lock->unlocked().c_str());
     });
     return lock;
@@ -69,8 +70,8 @@ std::string own_as_continued(const std::filesystem::path& folder, const scene::S
         const std::string there = run_in(folder);
         holds_continued = std::filesystem::exists(folder / "run.json") && there != branch;
         if (!there.empty() && there != continued && there != branch)
-            throw BadInput(folder.string() + ": the files there are of run " + there + ", and the checkpoint is of run " + continued +
-                           ": continue in the folder of its own run, or in a new one (--out)");
+            throw BadInput(folder.string() + ": the files in this folder belong to run " + there + ", but the checkpoint belongs to run " +
+                           continued + ": continue in the folder of its own run, or in a new one (--out)");
     });
     return slabs().largest(holds_continued ? 1 : 0) != 0 ? continued : branch;
 }

@@ -58,21 +58,20 @@ void add_picture(CLI::App& app, int& exit_code) {
     CLI::App* picture = app.add_subcommand("picture", "Draw a frame of a run as PNG");
     picture->add_option("result", arguments->result, "Output folder of a run")->required();
     picture->add_option("--field", arguments->wish.field,
-                        "smoke, speed, vorticity (2D), temperature, pressure, ..., or water (default: what the run is about)");
+                        "smoke, speed, vorticity (2D), temperature, pressure, ..., or water (default: chosen by the solver)");
     picture->add_option("--time", arguments->time, "Time of the frame [s] (default: the last)");
-    picture->add_option("--sheet", arguments->sheet, "Draw so many frames side by side, from the first to --time")
+    picture->add_option("--sheet", arguments->sheet, "Number of frames drawn side by side, from the first to --time")
         ->check(CLI::Range(1, 20));
     picture->add_option("--range", arguments->range,
                         "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: the frame's own)");
     picture
         ->add_option("--surface", arguments->wish.surface,
-                     "How the surface of a liquid is made, with --quality or in 2D (default: as the scene says)")
+                     "Surface reconstruction of a liquid, with --quality or in 2D (default: that of the scene)")
         ->check(CLI::IsMember({"zhu_bridson", "anisotropic", "density", "level_set"}));
     picture->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
         ->check(CLI::Range(32, 8192));
-    picture->add_flag("--grid", arguments->wish.grid, "Draw the cells that hold liquid, tall ones as they are (2D)");
-    picture->add_flag("--quality", arguments->wish.quality,
-                      "As a camera would see it: bent and mirrored light, a sky, a floor (3D; 16 to 9)");
+    picture->add_flag("--grid", arguments->wish.grid, "Draw the cells that contain liquid, tall cells in their true height (2D)");
+    picture->add_flag("--quality", arguments->wish.quality, "Ray-traced: refraction, reflection, a sky, a floor (3D; 16 to 9)");
     picture->add_option("--out", arguments->out, "File to write (default: RESULT/picture.png)");
     picture->callback([arguments, &exit_code] {
         if (!arguments->range.empty()) arguments->wish.range = picture::range_of(arguments->range);

@@ -12,9 +12,9 @@ namespace weir::app {
 
 void add_report(CLI::App& app, int& exit_code) {
     auto results = std::make_shared<std::string>("results"), readme = std::make_shared<std::string>();
-    CLI::App* command = app.add_subcommand("report", "Write index.html from what is published; nothing is run");
+    CLI::App* command = app.add_subcommand("report", "Write index.html from the published results; nothing is run");
     command->add_option("results", *results, "Folder of published results (default: results)");
-    command->add_option("--readme", *readme, "Write the results between the markers of this file too");
+    command->add_option("--readme", *readme, "Also write the results between the markers of this file");
     command->callback([results, readme, &exit_code] {
         std::printf("%s\n", validation::write_page(*results).c_str());
         if (!readme->empty()) validation::update_readme(*readme, *results);

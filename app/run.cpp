@@ -82,15 +82,16 @@ std::string explain_ranks(const Simulation& simulation) {
     if (!slabs().several()) return {};
     const sim::Shares& shares = simulation.shares();
     const Cut& cut = shares.cut;
-    std::string text = "over " + std::to_string(slabs().ranks()) + " ranks, ";
-    if (shares.nothing_shared()) return text + "every rank does all of it: there is nothing to cut\n";
-    text += std::string("cut along ") + (scene.dim() == 2 ? "y" : "z");
-    if (cut.empty()) return text + " into as many particles each; every rank holds and moves its own, and knows those near its cuts\n";
-    text += " before planes";
+    std::string text = "in parallel on " + std::to_string(slabs().ranks()) + " ranks, ";
+    if (shares.nothing_shared()) return text + "the domain cannot be partitioned: every rank computes all of it (replicated work)\n";
+    text += std::string("partitioned along ") + (scene.dim() == 2 ? "y" : "z");
+    if (cut.empty())
+        return text + " into equal numbers of particles; each rank stores and advances its own particles and stores ghost particles\n";
+    text += ", subdomains begin at planes";
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
-    text += simulation.solver().holds_own_planes() ? "; every rank holds and computes its own planes of the grids"
-                                                   : "; every rank holds the whole grids and computes its own planes of them";
-    if (!shares.by_all.empty()) text += ", but does alone: " + shares.by_all;
+    text += simulation.solver().holds_own_planes() ? "; distributed storage: each rank stores and computes its own slab"
+                                                   : "; replicated storage: each rank stores the whole grids and computes its own slab";
+    if (!shares.by_all.empty()) text += "; replicated work: " + shares.by_all;
     return text + "\n";
 }
 
@@ -119,11 +120,10 @@ std::string busy_warning(const std::vector<output::RunLog::RankState>& ranks, co
     for (const auto& rank : ranks) seconds = std::max(seconds, rank.busy_seconds);
     if (!slabs().several() || seconds < 0.1 * spent.stepping) return {};
     char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "warning: for %.3g of %.3g s other processes were busy on the processors of the ranks, which slept while they waited for one "
-        "another: fewer ranks, or one process, may be faster (ranks.busy_seconds in run.json)",
-        std::min(seconds, spent.stepping), spent.stepping);
+    std::snprintf(text, sizeof text,
+                  "warning: for %.3g of %.3g s other processes occupied the processors, and the ranks yielded while waiting for messages: "
+                  "fewer ranks, or one process, may be faster (ranks.busy_seconds in run.json)",
+                  std::min(seconds, spent.stepping), spent.stepping);
     return text;
 }
 
@@ -270,10 +270,10 @@ std::filesystem::path find_checkpoint(const std::filesystem::path& path) {
     for (const auto& file : {sim::checkpoint_file(path), sim::last_good_file(path)})
         if (std::filesystem::exists(file)) return file;
     const bool has_earlier = std::filesystem::exists(earlier(sim::checkpoint_file(path)));
-    throw BadInput(path.string() +
-                   " has no checkpoint to continue from: one is written when a run is interrupted or fails, and with "
-                   "--checkpoint-every N; a finished run without one has nothing left to do" +
-                   (has_earlier ? "; " + earlier("checkpoint.weir").string() + " there is of an earlier run" : ""));
+    throw BadInput(
+        path.string() +
+        " has no checkpoint to continue from: a checkpoint is written when a run is interrupted or fails, and with --checkpoint-every N" +
+        (has_earlier ? "; " + earlier("checkpoint.weir").string() + " in this folder belongs to an earlier run" : ""));
 }
 
 /// Where --out says; else beside the checkpoint that is continued; else out/<name of the scene>.
@@ -286,8 +286,8 @@ std::filesystem::path output_folder(const RunArguments& arguments, const scene::
 /// A metric may look at every step, so a run is measured whole or not at all.
 std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& simulation) {
     if (arguments.measure.empty() && arguments.reference.empty()) return std::nullopt;
-    if (arguments.measure.empty()) throw BadInput("--reference says what a run is compared with: it needs --measure");
-    if (!arguments.restart.empty()) throw BadInput("--measure looks at a run from its start: it does not go with --restart");
+    if (arguments.measure.empty()) throw BadInput("--reference requires --measure: it names the reference of the metrics");
+    if (!arguments.restart.empty()) throw BadInput("--measure requires a run from its start: leave out --restart");
     return std::optional<Measured>(std::in_place, simulation, arguments.measure, arguments.reference);
 }
 
@@ -295,14 +295,14 @@ std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& s
 void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder) {
     for (const auto& path : series) std::printf("%s\n", path.string().c_str());
     if (!series.empty())
-        std::printf("to see it: weir view %s (a window), weir picture %s (a PNG), or open the .pvd in ParaView\n", folder.c_str(),
+        std::printf("view it: weir view %s (a window), weir picture %s (a PNG), or open the .pvd in ParaView\n", folder.c_str(),
                     folder.c_str());
 }
 
 /// A checkpoint at the end of its scene: there is nothing to continue.
 int tell_finished(const Simulation& simulation) {
-    std::fprintf(stderr, "nothing is left to do: the run has reached its end at t = %.6g s; to go on: --set time.end=%.6g\n",
-                 simulation.end_time(), 2 * simulation.end_time());
+    std::fprintf(stderr, "the run has already reached its end at t = %.6g s; to continue: --set time.end=%.6g\n", simulation.end_time(),
+                 2 * simulation.end_time());
     return exit_success;
 }
 
@@ -314,14 +314,13 @@ int simulate(const RunArguments& arguments) {
     std::optional<Checkpoint> checkpoint;
     if (!arguments.restart.empty()) checkpoint = Checkpoint::read(find_checkpoint(arguments.restart));
     if (arguments.scene.empty() && !checkpoint)
-        throw BadInput("weir run needs a scene (a file, a folder with a scene.toml, or the name of a case), or --restart");
+        throw BadInput("weir run requires a scene (a file, a folder with a scene.toml, or the name of a case), or --restart");
 
     scene::Scene scene = arguments.scene.empty() ? scene_of(*checkpoint, overrides)
                                                  : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
     sim::require_ranks(scene, slabs().ranks());
     if (arguments.planned_ranks > 0) {
-        if (!arguments.explain)
-            throw BadInput("--ranks tells what a run over so many ranks takes: it needs --explain; mpirun -n N starts one");
+        if (!arguments.explain) throw BadInput("--ranks estimates a run in parallel (MPI): it requires --explain; mpirun -n N starts one");
         sim::require_ranks(scene, arguments.planned_ranks);
     }
     slabs().hold_whole(std::any_of(arguments.measure.begin(), arguments.measure.end(), validation::looks_at_whole_fields));
@@ -331,7 +330,7 @@ int simulate(const RunArguments& arguments) {
     Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
     for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
-        std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it may cost, and does nothing\n", simulation.scene().file().c_str(),
+        std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it has no effect but may cost time\n", simulation.scene().file().c_str(),
                      effect.c_str());
     if (const std::string remark = rigid::remark_on_density(simulation.scene()); !remark.empty())
         std::fprintf(stderr, "%s: %s\n", simulation.scene().file().c_str(), remark.c_str());
@@ -378,7 +377,7 @@ int simulate(const RunArguments& arguments) {
         throw;
     }
     if (simulation.steady())
-        std::fprintf(stderr, "steady at t = %.6g s: no velocity changes faster than time.stop_when_steady\n", simulation.time());
+        std::fprintf(stderr, "steady at t = %.6g s: all velocities change more slowly than time.stop_when_steady\n", simulation.time());
     if (!arguments.quiet) tell_results(recorder.series(), folder);
     const bool finished = ending == sim::Ending::finished;
     if (finished && measured) std::fputs(measured->text().c_str(), stdout);
@@ -401,17 +400,18 @@ void add_run(CLI::App& app, int& exit_code) {
     run->add_option("--threads", arguments->threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
     run->add_option("--backend", arguments->backend,
                     "threads[:isa], opencl[:N] (weir list devices) or reference: the same as --set scheme.backend=...");
-    run->add_option("--measure", arguments->measure, "A metric of the finished run, as cases measure it; may be repeated")
+    run->add_option("--measure", arguments->measure, "Print a metric of the finished run, as defined for cases; may be repeated")
         ->type_name("METRIC")
         ->allow_extra_args(false);
-    run->add_option("--reference", arguments->reference, "What --measure compares with, by name, as in case.toml");
+    run->add_option("--reference", arguments->reference, "Name of the reference for --measure, as in case.toml");
     run->add_option("--restart", arguments->restart, "Continue from a checkpoint, or from the one in an output folder, bit for bit");
     run->add_option("--checkpoint-every", arguments->checkpoint_every, "Save a checkpoint every N steps")->check(CLI::PositiveNumber);
-    run->add_flag("--explain", arguments->explain, "Tell what the scene calls for, what is built and what a step costs; write nothing");
-    run->add_option("--ranks", arguments->planned_ranks, "With --explain: over so many ranks, their memory and messages")
+    run->add_flag("--explain", arguments->explain,
+                  "Print the requested solver and effects, the allocated fields and the cost per step; write nothing");
+    run->add_option("--ranks", arguments->planned_ranks, "With --explain: number of MPI ranks; estimate their memory and messages")
         ->check(CLI::PositiveNumber);
-    run->add_flag("--any-size", arguments->any_size, "Begin though the frames may not fit on the disk");
-    run->add_flag("--quiet", arguments->quiet, "No progress bar, no list of files, no balance; warnings are printed all the same");
+    run->add_flag("--any-size", arguments->any_size, "Start even if the frames may not fit on the disk");
+    run->add_flag("--quiet", arguments->quiet, "No progress bar, list of files or balance; warnings are still printed");
     run->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }
 

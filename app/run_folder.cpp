@@ -31,14 +31,14 @@ scene::Scene scene_of_run(const std::filesystem::path& folder) {
     const auto file = folder / "run.json";
     const auto j = parsed(file);
     if (!j.is_object() || !j.contains("scene"))
-        throw BadInput(folder.string() + " is not the folder of a run: it has no readable run.json");
+        throw BadInput(folder.string() + " is not the output folder of a run: it has no readable run.json");
     const auto& kept = j["scene"];
-    if (!kept.is_object()) throw BadInput(file.string() + ": \"scene\" is no object");
+    if (!kept.is_object()) throw BadInput(file.string() + ": \"scene\" is not an object");
     std::vector<scene::Override> overrides;
     if (const auto list = kept.find("overrides"); list != kept.end()) {
-        if (!list->is_array()) throw BadInput(file.string() + ": \"overrides\" is no list");
+        if (!list->is_array()) throw BadInput(file.string() + ": \"overrides\" is not a list");
         for (const auto& text : *list) {
-            if (!text.is_string()) throw BadInput(file.string() + ": \"overrides\" holds what is no text");
+            if (!text.is_string()) throw BadInput(file.string() + ": \"overrides\" contains an entry that is not a text");
             overrides.push_back(scene::to_override(text.get<std::string>()));
         }
     }

@@ -101,7 +101,7 @@ std::string shown_markdown() {
         "scene must say for a name to be there stands beside it; `emitters.smoke` and `initial.smoke` bring smoke as well.\n";
     for (const scene::SolverKind& kind : sim::registry()) {
         text +=
-            fmt::format("\n## `{}`\n{}\n\n| name | unit | where | asked for by |\n|---|---|---|---|\n", kind.schema.name, kind.schema.doc);
+            fmt::format("\n## `{}`\n{}\n\n| name | unit | where | required key |\n|---|---|---|---|\n", kind.schema.name, kind.schema.doc);
         for (const Shown& s : shown_by(kind))
             text += fmt::format("| `{}` | {} | {} | {} |\n", s.name, s.unit, s.where, s.takes.empty() ? "" : "`" + s.takes + "`");
     }

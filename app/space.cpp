@@ -37,8 +37,8 @@ std::string check_space(const Simulation& simulation, const std::filesystem::pat
                                            size_text(output.bytes_of_frame), size_text(bytes));
     if (bytes > room && !any_size)
         throw BadInput(
-            fmt::format("{}: {}; {} are free there\n    a longer output.every, fewer output.fields or output.precision = "
-                        "\"single\" make less of it; --any-size begins all the same",
+            fmt::format("{}: {}; {} are free there\n    a longer output.every, fewer output.fields or output.precision = \"single\" reduce "
+                        "it; --any-size starts the run anyway",
                         folder.string(), frames, size_text(room)));
     return fmt::format("{}; {} are free in {}\n", frames, size_text(room), folder.string());
 }

@@ -24,11 +24,11 @@ struct StudyArguments {
     void add_to(CLI::App& command, const std::string& all, const std::string& size_text, const std::string& out_text) {
         command.add_option("names", options.names, "Cases by name, or their folders");
         command.add_flag("--all", options.all, all);
-        command.add_flag("--list", options.list, "Show what there is; run nothing");
+        command.add_flag("--list", options.list, "List the available cases; run nothing");
         command.add_option("--size", size, size_text)->check(CLI::IsMember({"ci", "full"}));
         command.add_option("--out", out, out_text + " (default: " + out + ")");
         command.add_option("--threads", threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
-        command.add_flag("--publish", publish, "Write the page of results as well");
+        command.add_flag("--publish", publish, "Also write the page of results");
         command.add_option("--publish-to", publish_to, "Its folder (default: " + publish_to + ")");
         command.add_flag("--quiet", options.quiet, "No progress line");
     }

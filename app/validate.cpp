@@ -9,17 +9,17 @@ namespace weir::app {
 
 void add_validate(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<StudyArguments<validation::ValidateOptions>>("out/validate", "results");
-    CLI::App* command = app.add_subcommand("validate", "Run cases and judge their claims; exit code 1 if one fails");
-    arguments->add_to(*command, "Every case", "ci: minutes; full: as published", "Folder of verdicts.json, svg/, csv/ and frames");
+    CLI::App* command = app.add_subcommand("validate", "Run cases and evaluate their claims; exit code 1 if one fails");
+    arguments->add_to(*command, "Run every case", "ci: minutes; full: as published", "Folder of verdicts.json, svg/, csv/ and frames");
     command->add_option("--backend", arguments->options.backend,
-                        "threads[:isa], opencl[:N] (weir list devices) or reference, for all runs of particles");
+                        "Backend of all particle runs: threads[:isa], opencl[:N] (weir list devices) or reference");
     command
         ->add_option("--compare", arguments->options.compare,
-                     "Folder of published results: a number that differs from the published one fails (exit code 1)")
+                     "Folder of published results: a value that differs from the published one fails (exit code 1)")
         ->check(CLI::ExistingDirectory);
     command
         ->add_option("--steps", arguments->options.steps,
-                     "End each run after N steps, at the first value of its sweep: all code of a case is run and nothing judged")
+                     "End each run after N steps, at the first value of its sweep: all code of a case runs, and no claim is evaluated")
         ->check(CLI::PositiveNumber);
     command->add_flag("--report", arguments->options.page, "Publish, and write all published results as one HTML page");
     command->callback([arguments, &exit_code] {

@@ -12,8 +12,9 @@ namespace weir::app {
 void hand_over(const std::string& called, const std::string& program, const std::vector<std::string>& arguments) {
     const auto path = std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
     if (!std::filesystem::exists(path))
-        throw BadInput("this weir has no viewer: " + path.string() +
-                       " is not there. It is built where VTK has a window system (Debian: libvtk9-dev); `weir picture` draws without one");
+        throw BadInput(
+            "this weir was installed without the viewer: " + path.string() +
+            " does not exist. It is built where VTK has a window system (Debian: libvtk9-dev); `weir picture` requires no window system");
     std::vector<char*> argv{const_cast<char*>(called.c_str())};
     for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);

@@ -28,11 +28,11 @@ what its accuracy costs.")
 set(same "weir (= ${PROJECT_VERSION})")
 
 set(CPACK_DEBIAN_WEIR_PACKAGE_NAME weir)
-set(CPACK_COMPONENT_WEIR_DESCRIPTION "fluid simulation, every real-time method proved and priced\n${about}\n\nThis package has the command, the cases and the tables that plans are made\nfrom.")
+set(CPACK_COMPONENT_WEIR_DESCRIPTION "fluid simulation by real-time methods, with verified accuracy and measured cost\n${about}\n\nThis package has the command, the cases and the tables of weir plan.")
 set(CPACK_DEBIAN_WEIR_PACKAGE_SUGGESTS "weir-view, python3-weir, ffmpeg, gnuplot-nox")
 
 set(CPACK_DEBIAN_VIEW_PACKAGE_NAME weir-view)
-set(CPACK_COMPONENT_VIEW_DESCRIPTION "fluid simulation: frames in a window, and a hand in a run\n${about}\n\nThis package has what opens windows: weir view and weir live.")
+set(CPACK_COMPONENT_VIEW_DESCRIPTION "fluid simulation: frames in a window, interactive forcing\n${about}\n\nThis package has the programs with windows: weir view and weir live.")
 set(CPACK_DEBIAN_VIEW_PACKAGE_DEPENDS "${same}")
 
 # Static: programs that link it need what it is made of.

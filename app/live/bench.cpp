@@ -22,7 +22,7 @@ double seconds_of(const std::string& text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
     if (error != std::errc() || !(value > 0) || (unit != "s" && !unit.empty()))
-        throw BadInput(fmt::format("--bench {}: how long, such as 10s", text));
+        throw BadInput(fmt::format("--bench {}: expected a time with its unit, such as 10s", text));
     return value;
 }
 
@@ -74,12 +74,13 @@ void measure(const Row& row, double seconds, WindowOptions options, bool json) {
 int bench(const std::string& time, const std::string& scene, const std::vector<scene::Override>& set, const std::string& report_table,
           const WindowOptions& options, bool json) {
     const double seconds = seconds_of(time);
-    if (scene.empty() && report_table.empty()) throw BadInput("weir live --bench needs a scene: the report's are not found");
+    if (scene.empty() && report_table.empty())
+        throw BadInput("weir live --bench requires a scene: the folder of the report's scenes was not found");
     const auto rows = scene.empty() ? rows_of_report(report_table) : std::vector<Row>{{scene, scene, set}};
-    if (json && scene.empty()) throw BadInput("weir live --bench --json needs a scene");
+    if (json && scene.empty()) throw BadInput("weir live --bench --json requires a scene");
     if (json) return measure(rows.front(), seconds, options, json), exit_success;
     std::printf("%d x %d pixels, simulation on %d threads, %s\n", options.width, options.height, threads(),
-                options.real_time ? "no faster than real time" : "as fast as it goes");
+                options.real_time ? "at most in real time" : "as fast as possible");
     std::printf("%-42s %9s %9s %10s %10s %10s %10s %9s\n", "scene", "frames/s", "steps/s", "step [ms]", "copy [ms]", "draw [ms]",
                 "CPU [ms]", "real time");
     for (const Row& row : rows) measure(row, seconds, options, json);

@@ -40,7 +40,7 @@ int live(Arguments arguments) {
     if (!arguments.bench.empty())
         return weir::live::bench(arguments.bench, arguments.scene, overrides, arguments.report_table, arguments.window, arguments.json);
     if (arguments.scene.empty())
-        throw weir::BadInput("weir live needs a scene (a file, a folder with a scene.toml, or the name of a case)");
+        throw weir::BadInput("weir live requires a scene (a file, a folder with a scene.toml, or the name of a case)");
     const auto scene = weir::live::endless(arguments.scene, overrides);
     const auto folder = folder_of(arguments, scene);
     weir::output::require_writable(folder);
@@ -58,18 +58,21 @@ int live(Arguments arguments) {
 
 int main(int argc, char** argv) {
     Arguments arguments;
-    CLI::App app("A scene in a window, where a hand pushes the fluid while it runs. F1 shows the keys. What was done is kept as a scene.",
-                 "weir live");
+    CLI::App app(
+        "Run a scene in a window and apply forces to the fluid with the mouse (interactive forcing). F1 shows the keys. The session is "
+        "saved as a scene.",
+        "weir live");
     app.add_option("scene", arguments.scene, "A scene file, a folder with a scene.toml, or the name of a case");
     app.add_option("--out", arguments.out, "Folder of session.toml, checkpoints and pictures (default: out/<name of the scene>_live)");
     app.add_option("--set", arguments.set, "Override a key: --set grid.cells=[64,64]; may be repeated")->allow_extra_args(false);
     app.add_option("--threads", arguments.threads, "Number of threads of the simulation")->check(CLI::Range(1, 1024));
-    app.add_option("--field", arguments.window.field, "What to colour by: speed, smoke, pressure, ...");
-    app.add_flag("--paused", arguments.window.paused, "Begin with a pause");
-    app.add_flag("--fast", arguments.fast, "As fast as it goes, not as the clock does");
-    app.add_option("--bench", arguments.bench, "Measure frames a second for so long, such as 10s: of the scene, or of the report's scenes");
-    app.add_flag("--json", arguments.json, "With --bench and a scene: the figures as JSON");
-    app.add_option("--report-table", arguments.report_table, "Folder of the report's scenes")->group("");
+    app.add_option("--field", arguments.window.field, "Field shown as colour: speed, smoke, pressure, ...");
+    app.add_flag("--paused", arguments.window.paused, "Start paused");
+    app.add_flag("--fast", arguments.fast, "Run as fast as possible instead of at most in real time");
+    app.add_option("--bench", arguments.bench,
+                   "Measure frames per second for this time, such as 10s, of the scene or of the earlier report's scenes");
+    app.add_flag("--json", arguments.json, "With --bench and a scene: print the values as JSON");
+    app.add_option("--report-table", arguments.report_table, "Folder of the earlier report's scenes")->group("");
     app.add_option("--width", arguments.window.width, "Pixels")->check(CLI::Range(64, 8192));
     app.add_option("--height", arguments.window.height, "Pixels")->check(CLI::Range(64, 8192));
     try {

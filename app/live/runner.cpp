@@ -84,7 +84,7 @@ void Runner::obey(Wishes wishes) {
     if (was_paused && !paused_) paced_from_ = clock::now(), paced_time_ = 0;
     if (was_paused && !paused_) counted_from_ = clock::now(), counted_time_ = 0, counted_steps_ = 0, ahead_ = -1;
     if (!wishes.field.empty()) field_ = wishes.field;
-    if (wishes.reset) session_.reset(), failed_ = false, message_ = "from the start again", before_.clear(), ahead_ = 0;
+    if (wishes.reset) session_.reset(), failed_ = false, message_ = "restarted", before_.clear(), ahead_ = 0;
     for (const auto& change : wishes.changes) try {
             session_.steer(change);
             message_ = change.key + " = " + change.value;
@@ -156,7 +156,7 @@ void Runner::publish() {
     s.has_hand = hand != nullptr;
     if (hand) s.hand_can = hand->can;
     if (hand && hand->has(HandKind::heat)) s.temperatures = temperatures_of(fields);
-    if (simulation.finished()) s.message = "the run has ended: r begins again";
+    if (simulation.finished()) s.message = "the run has ended: press r to restart";
     s.transfer_ms = transfer_ms_ = 1e3 * seconds(clock::now() - start);
     const std::lock_guard lock(mutex_);
     std::swap(back_, ready_);

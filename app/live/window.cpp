@@ -26,14 +26,14 @@ constexpr double patience = 1.0 / 40;  // [s]
 constexpr real warmer = 40;  // [K]
 
 const char* const help_text =
-    "left drag    the hand acts in its brush\n"
+    "left drag    apply the brush\n"
     "1 2 3 4 6    push, pull, pour, drain, hold a body\n"
     "5            heat; once more: cool\n"
     "wheel        size of the brush\n"
-    "right drag   camera;   Ctrl + wheel, + and -   nearer and farther\n"
-    "space        pause;   .   one step;   r   from the start again\n"
-    "left, right  choose a number of the scene;   up, down   change it\n"
-    "c            colour by the next field;   v   look at all\n"
+    "right drag   camera;   Ctrl + wheel, + and -   zoom\n"
+    "space        pause;   .   one step;   r   restart\n"
+    "left, right  choose a value of the scene;   up, down   change it\n"
+    "c            colour by the next field;   v   fit the view\n"
     "s            save a checkpoint;   p   a picture\n"
     "F1           these keys;   q   close";
 
@@ -151,15 +151,15 @@ void Window::tell() {
 }
 
 std::string Window::told_of_hand(const Snapshot& s) const {
-    if (!s.has_hand) return "this solver has no hand";
+    if (!s.has_hand) return "this solver has no interactive forcing";
     const auto tool = static_cast<std::size_t>(tool_);
     if (!s.hand_can[tool]) {
         const char* why = tool_ == HandKind::heat   ? "the fluid of this scene carries no heat"
-                          : tool_ == HandKind::grab ? "no body here can be held"
-                                                    : "these columns have no currents";
-        return fmt::format("hand: no {}: {}", hand_kinds[tool], why);
+                          : tool_ == HandKind::grab ? "no body at the brush to hold"
+                                                    : "this model of a height field has no currents to push";
+        return fmt::format("brush: no {}: {}", hand_kinds[tool], why);
     }
-    if (tool_ == HandKind::heat) return fmt::format("hand: {} to {:.4g} K, {:.3g} m", cools_ ? "cool" : "heat", temperature_, radius_);
+    if (tool_ == HandKind::heat) return fmt::format("brush: {} to {:.4g} K, {:.3g} m", cools_ ? "cool" : "heat", temperature_, radius_);
     return fmt::format("hand: {}, {:.3g} m", hand_kinds[tool], radius_);
 }
 

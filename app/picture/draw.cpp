@@ -19,7 +19,7 @@ constexpr int usual_size = 900, usual_size_of_quality = 1280;
 Canvas draw_with_rays(const View& view, bool columns) {
     if (columns || view.scene.dim() != 3) throw BadInput("--quality draws liquids and smoke in 3D");
     if (view.field == "water" && view.frame.particles.count("markers") == 0)
-        throw BadInput("--quality draws water from its level set or its particles; this run has only heights of its surface");
+        throw BadInput("--quality draws water from its level set or its particles; this run has only surface heights");
     return draw_quality(view);
 }
 
@@ -32,28 +32,28 @@ Range range_of(const std::string& text) {
     const char *at = text.data(), *behind = at + text.size();
     for (; count < ends.size(); ++count) {
         const auto [next, error] = std::from_chars(at, behind, ends[count]);
-        if (error != std::errc() || !std::isfinite(ends[count])) refuse("\"" + std::string(at, behind) + "\" is no number");
+        if (error != std::errc() || !std::isfinite(ends[count])) refuse("\"" + std::string(at, behind) + "\" is not a number");
         at = next;
         if (at == behind) break;
-        if (*at++ != ',' || count == 1) refuse("\"" + std::string(at - 1, behind) + "\" is too much");
+        if (*at++ != ',' || count == 1) refuse("\"" + std::string(at - 1, behind) + "\" has too many values");
     }
-    if (count == 0 && ends[0] <= 0) refuse("the highest colour alone has a value above 0");
-    if (count == 1 && ends[0] >= ends[1]) refuse("the lower end is not below the upper one");
+    if (count == 0 && ends[0] <= 0) refuse("a single value, that of the highest colour, must be greater than 0");
+    if (count == 1 && ends[0] >= ends[1]) refuse("LOW must be less than HIGH");
     return count == 0 ? Range{{}, ends[0]} : Range{ends[0], ends[1]};
 }
 
 Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish) {
     particles_as_markers(frame, scene);
     if (wish.field.empty() || wish.field == "water") level_set_as_markers(frame);
-    if (wish.grid && scene.dim() != 2) throw BadInput("the grid is drawn in pictures of 2D runs");
+    if (wish.grid && scene.dim() != 2) throw BadInput("--grid draws the grid of 2D runs only");
     const std::string field = wish.field.empty() ? best_field(frame) : wish.field;
     const bool columns = is_of_columns(frame);
     if (field == "water" && !columns && !frame.particles.count("markers") && !has_sea(frame))
-        throw BadInput("this run has no markers, and no surface, to draw as water");
+        throw BadInput("this run has neither markers nor a surface to draw as water");
     const int size = wish.size > 0 ? wish.size : wish.quality ? usual_size_of_quality : usual_size;
     const View view{scene, frame, field, size, wish.range, wish.surface, wish.grid};
     if (!wish.surface.empty() && (field != "water" || columns || (scene.dim() == 3 && !wish.quality)))
-        throw BadInput("--surface goes with liquids in pictures of quality, and in 2D");
+        throw BadInput("--surface applies to liquids in 2D, and in 3D with --quality");
     if (wish.quality) return draw_with_rays(view, columns);
     return columns ? draw_columns(view) : scene.dim() == 2 ? draw_2d(view) : draw_3d(view);
 }

@@ -67,7 +67,7 @@ MeshRays::Hit MeshRays::first(const Ray& ray, real from) const {
 bool can_trace_meshes() { return false; }
 struct MeshRays::Tree {};
 MeshRays::MeshRays(const SurfaceMesh& mesh) : mesh_(mesh) {
-    throw BadInput("this weir was built without Embree and traces no rays through water: install libembree-dev and configure again");
+    throw BadInput("this weir was built without Embree, which ray tracing of water requires: install libembree-dev and configure again");
 }
 MeshRays::Hit MeshRays::first(const Ray&, real) const { return {}; }
 

@@ -41,12 +41,12 @@ int view(const Arguments& arguments) {
 int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app(
-        "The frames of a run in a window: space plays, arrows step, c colours by the next field, w shows particles, grid or both, "
-        "a fits the scale, r looks at all, g grabs a picture, q closes",
+        "Show the frames of a run in a window: space plays, arrows step, c selects the next field, w shows particles, grid or both, a fits "
+        "the colour scale, r resets the camera, g saves a picture, q closes",
         "weir view");
     app.add_option("result", arguments.result, "Output folder of a run")->required();
     app.add_option("--png", arguments.png, "Draw one frame into this file and open no window");
-    app.add_option("--field", arguments.field, "speed, smoke, pressure, density, ... (default: what the run is about)");
+    app.add_option("--field", arguments.field, "speed, smoke, pressure, density, ... (default: chosen by the solver)");
     app.add_option("--time", arguments.time, "Time of the first frame [s] (default: the first; with --png the last)");
     app.add_option("--width", arguments.options.width, "Pixels")->check(CLI::Range(64, 8192));
     app.add_option("--height", arguments.options.height, "Pixels")->check(CLI::Range(64, 8192));

@@ -77,7 +77,7 @@ vtkSmartPointer<vtkPolyData> points_of(const output::ReadFile& file) {
 /// Of this kind, as its name says.
 output::ReadFile opened(const std::filesystem::path& file, bool image) {
     output::ReadFile read = output::read_vtk(file);
-    if (read.image != image) throw BadInput(file.string() + ": this frame holds no " + (image ? "grid" : "points"));
+    if (read.image != image) throw BadInput(file.string() + ": this frame contains no " + (image ? "grid" : "points"));
     return read;
 }
 

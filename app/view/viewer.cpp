@@ -85,7 +85,7 @@ void Viewer::draw() {
     stage_.show(shown_, field_, what_);
     stage_.tell(fmt::format(
         "t = {:.4g} s   frame {} of {}{}{}", shown_.time, number_ + 1, series_.size(), playing_ ? "   playing" : "",
-        options_.offscreen ? "" : "\nspace play   arrows step   c colour by   w what   a fit scale   r reset   g grab   q quit"));
+        options_.offscreen ? "" : "\nspace play   arrows step   c colour by   w particles/grid   a fit scale   r reset   g grab   q quit"));
     window_->Render();
 }
 

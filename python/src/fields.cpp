@@ -39,11 +39,12 @@ Change::Change(StatePtr state) : state_(std::move(state)) {
     if (state_->busy.exchange(true)) throw std::runtime_error("the simulation is stepping in another thread");
     if (const int arrays = state_->leases; arrays > 0) {
         state_->busy = false;
-        PyErr_SetString(PyExc_BufferError,
-                        fmt::format("{} array{} at the fields of this moment, which a step would take away: copy what is to be kept "
-                                    "(numpy.array(...)), and delete the array",
-                                    arrays, arrays == 1 ? " still looks" : "s still look")
-                            .c_str());
+        PyErr_SetString(
+            PyExc_BufferError,
+            fmt::format(
+                "{} array{} the current fields, which a step invalidates: copy the data to keep (numpy.array(...)), and delete the array",
+                arrays, arrays == 1 ? " still references" : "s still reference")
+                .c_str());
         throw py::error_already_set();
     }
     ++state_->moment;

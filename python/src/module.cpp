@@ -36,14 +36,14 @@ PYBIND11_MODULE(_weir, module) {
         machine.commit + ", " + machine.compiler + ", " + machine.build + (machine.options.empty() ? "" : ", " + machine.options);
     add_exceptions(module);
     module.def(
-        "threads", [] { return weir::threads(); }, "Threads that steps take at most.");
+        "threads", [] { return weir::threads(); }, "Maximum number of threads of a step.");
     module.def(
         "set_threads",
         [](int count) {
             if (count < 0) throw weir::BadInput("a number of threads is at least 1, or 0 for all");
             weir::set_threads(count);
         },
-        py::arg("count"), "From here on so many threads; 0: as many as the machine has. Results do not depend on it.");
+        py::arg("count"), "Sets the number of threads; 0: all of the machine. Results do not depend on it.");
     weir::python::add_simulation(module);
     weir::python::add_studies(module);
 }

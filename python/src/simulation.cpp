@@ -183,12 +183,12 @@ py::bytes picture(const StatePtr& state, const std::string& field, int size) {
 }
 
 void measure(const StatePtr& state, const std::vector<std::string>& metrics, const std::string& reference) {
-    if (state->simulation.steps() > 0) throw BadInput("metrics look at a run from its start: ask for them before the first step");
+    if (state->simulation.steps() > 0) throw BadInput("metrics require a run from its start: request them before the first step");
     state->measured.emplace(state->simulation, metrics, reference);
 }
 
 std::map<std::string, double> measured(const StatePtr& state) {
-    if (!state->measured) throw BadInput("nothing is measured: ask for metrics before the first step");
+    if (!state->measured) throw BadInput("no metrics were requested: request them before the first step");
     return state->measured->values();
 }
 
@@ -200,7 +200,7 @@ auto of_simulation(F get) {
 }  // namespace
 
 void add_simulation(py::module_& module) {
-    py::class_<StepReport>(module, "StepReport", "What one step answers; nan where the solver does not know the quantity.")
+    py::class_<StepReport>(module, "StepReport", "Report of one step; nan where the solver does not provide the quantity.")
         .def_readonly("dt", &StepReport::dt, "[s]")
         .def_readonly("cfl", &StepReport::cfl)
         .def_readonly("max_divergence", &StepReport::max_divergence, "[1/s]")

@@ -1,4 +1,4 @@
-"""Fluid simulation: every real-time method, each proved and priced.
+"""Fluid simulation by real-time methods, with verified accuracy and measured cost.
 
     import weir
     sim = weir.Simulation("cases/dam_break_2d", set={"grid.cells": [64, 32]})

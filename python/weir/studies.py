@@ -20,7 +20,7 @@ class Claim:
     low: float
     high: float
     passed: bool
-    verdict: str  # "pass", "FAIL", or "asked": asked and, as the case says, not reached
+    verdict: str  # "pass", "FAIL", or "open": an open target, not met for the reason in `not_reached`
     why: str
     not_reached: str
     note: str
@@ -94,7 +94,7 @@ class Plan:
 
 def validate(case: "str | os.PathLike", size: str = "ci", variants: "Sequence[str]" = (), out: "str | os.PathLike | None" = None,
              progress: "Callable[[str], object] | None" = None) -> Verdicts:
-    """Runs a case, or those of its variants that are named, and judges its claims. Frames go to the folder `out`; without one they are not kept. progress(text) before each run."""
+    """Runs a case, or those of its variants that are named, and evaluates its claims. Frames go to the folder `out`; without one they are not kept. progress(text) before each run."""
     with tempfile.TemporaryDirectory() as scratch:
         result = _weir.validate(str(case), size, list(variants), str(out or scratch), progress)
     return Verdicts(**{**result, "claims": [Claim(**claim) for claim in result["claims"]]})
@@ -102,13 +102,13 @@ def validate(case: "str | os.PathLike", size: str = "ci", variants: "Sequence[st
 
 def cost(case: "str | os.PathLike", size: str = "ci", methods: "Sequence[str]" = (),
          progress: "Callable[[str], object] | None" = None) -> "list[CostPoint]":
-    """What accuracy costs in time: every method of a study (or those named) at every setting, as CostPoints."""
+    """Cost of accuracy: every method of a study (or those named) at every configuration, as CostPoints."""
     return [CostPoint(**point) for point in _weir.cost(str(case), size, list(methods), progress)]
 
 
 def plan(case: "str | os.PathLike", error: "str | float" = "", budget: "str | float" = "", frame: "str | float" = "",
          tables: "str | os.PathLike" = "") -> Plan:
-    """Which setting to take for an error ("2%") and a budget of computing a frame ("16ms"), out of the tables of `weir cost`."""
+    """Recommends a configuration for an error ("2%") and a budget of computing time per frame ("16ms"), from the tables of `weir cost`."""
     result = _weir.plan(str(case), _text(error), _text(budget), _text(frame), str(tables))
     return Plan(take=result["take"] and Choice(**result["take"]), nearest=[Choice(**c) for c in result["nearest"]], prices=result["prices"])
 

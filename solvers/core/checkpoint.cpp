@@ -109,7 +109,7 @@ public:
 
     [[noreturn]] void refuse(Fault fault) const {
         throw BadInput(path_.string() + (fault == missing   ? ": cannot read checkpoint"
-                                         : fault == foreign ? ": not a checkpoint of this version"
+                                         : fault == foreign ? ": not a checkpoint of this version of weir"
                                                             : ": checkpoint is truncated or altered (checksum differs)"));
     }
 

@@ -98,7 +98,7 @@ std::string first_bytes_of(const std::filesystem::path& path, std::size_t most) 
             continue;
         }
         if (got < 0) throw BadInput(name + ": cannot be read to its end: " + std::strerror(errno));
-        if (got == 0 && pipe && all.empty() && !waited) throw BadInput(name + ": this is a pipe that no program writes to");
+        if (got == 0 && pipe && all.empty() && !waited) throw BadInput(name + ": no program writes to this pipe");
         if (got == 0) break;
         all.append(block.data(), static_cast<std::size_t>(got));
     }
@@ -107,7 +107,7 @@ std::string first_bytes_of(const std::filesystem::path& path, std::size_t most) 
 
 std::string bytes_of(const std::filesystem::path& path, std::size_t most) {
     const std::string name = path.string();
-    if (name.empty()) throw BadInput("an empty text names no file");
+    if (name.empty()) throw BadInput("a file name must not be empty");
     const Descriptor file(path);
     const struct stat status = status_of(file, name, false);
     const auto size = static_cast<std::uintmax_t>(status.st_size);

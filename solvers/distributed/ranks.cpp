@@ -64,8 +64,9 @@ void join() {
     if (started_ranks() <= 1) return;
     const auto entry = reinterpret_cast<MpiEntry>(mpi_function(mpi_entry));
     if (!entry)
-        throw BadInput("weir was started as " + std::to_string(started_ranks()) +
-                       " ranks and has no MPI: install libopenmpi-dev, configure with WEIR_MPI=ON and build again, or start it once");
+        throw BadInput(
+            "weir was started as " + std::to_string(started_ranks()) +
+            " ranks, but this build has no MPI: install libopenmpi-dev, configure with WEIR_MPI=ON and build again, or start one process");
     set_slabs(std::unique_ptr<Slabs>(entry()));
     if (slabs().rank() > 0) print_nothing();
 }

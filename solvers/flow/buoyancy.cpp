@@ -52,10 +52,20 @@ struct Buoyancy final : MacEffect<D> {
 EffectKind buoyancy() {
     return effect_kind<Buoyancy>(
         {"buoyancy",
-         "Warm fluid rises and smoke sinks along y: beta (T - ambient) - alpha smoke (Fedkiw et al. 2001).",
-         {{.name = "alpha", .type = Type::number, .doc = "Weight of smoke.", .unit = "m/s^2", .fallback = 0.0, .steerable = true},
-          {.name = "beta", .type = Type::number, .doc = "Lift a kelvin.", .unit = "m/(s^2 K)", .fallback = 0.0, .steerable = true},
-          {.name = "ambient", .type = Type::number, .doc = "Temperature without lift.", .unit = "K", .fallback = 0.0}},
+         "Buoyancy along y: beta (T - ambient) - alpha smoke (Fedkiw et al. 2001).",
+         {{.name = "alpha",
+           .type = Type::number,
+           .doc = "Acceleration per unit of smoke, downwards.",
+           .unit = "m/s^2",
+           .fallback = 0.0,
+           .steerable = true},
+          {.name = "beta",
+           .type = Type::number,
+           .doc = "Acceleration per kelvin, upwards.",
+           .unit = "m/(s^2 K)",
+           .fallback = 0.0,
+           .steerable = true},
+          {.name = "ambient", .type = Type::number, .doc = "Temperature without buoyancy.", .unit = "K", .fallback = 0.0}},
          {"alpha", "beta"}});
 }
 

@@ -152,11 +152,16 @@ private:
 }  // namespace
 
 EffectKind confinement() {
-    return effect_kind<Confinement>(
-        {"confinement",
-         "Vorticity confinement: pushes fluid around its vortices (Fedkiw et al. 2001). Adds energy; not for accuracy studies.",
-         {{.name = "epsilon", .type = scene::Type::number, .doc = "Strength.", .unit = "1/s", .required = true, .min = 0, .steerable = true}},
-         {"epsilon"}});
+    return effect_kind<Confinement>({"confinement",
+                                     "Vorticity confinement (Fedkiw et al. 2001). It adds energy; not for accuracy studies.",
+                                     {{.name = "epsilon",
+                                       .type = scene::Type::number,
+                                       .doc = "Strength.",
+                                       .unit = "1/s",
+                                       .required = true,
+                                       .min = 0,
+                                       .steerable = true}},
+                                     {"epsilon"}});
 }
 
 }  // namespace weir::flow

@@ -64,7 +64,7 @@ typename Emitters<D>::Emitter Emitters<D>::make(const scene::Table& table, const
 
 template <int D>
 std::string Emitters<D>::idle(const Emitter& emitter, const geometry::Shape<D>& shape, const MacState<D>& state) {
-    if (emitter.sets.empty()) return "the emitter gives nothing: it names no velocity, smoke or temperature";
+    if (emitter.sets.empty()) return "the emitter has no effect: give it a velocity, smoke or temperature";
     for (const auto& set : emitter.sets)
         if (!set.any && (set.axis < 0 || set.value != 0))
             return std::string("the emitter is thinner than a cell: it covers the centre of no ") + (set.axis < 0 ? "cell" : "face") +

@@ -19,14 +19,13 @@ std::vector<Key> Heat<D>::keys() {
         "heat, melting and freezing be simulated",
         {{.name = "conduction",
           .type = Type::choice,
-          .doc = "In time, first order. stages: as many explicit stages as a step of its length needs; explicit: one, which limits "
-                 "the step to about rho c h^2/(6 dim k).",
+          .doc = "First-order scheme in time. stages: as many explicit stages as the step requires; explicit: one stage, which limits the "
+                 "step to about rho c h^2/(6 dim k).",
           .fallback = std::string("stages"),
           .choices = {"stages", "explicit"}},
          {.name = "lift",
           .type = Type::number,
-          .doc = "Gravity that lifts the melt along y by as much lighter as it is than at its melting point, by the substance's "
-                 "expansion.",
+          .doc = "Gravity of the Boussinesq buoyancy of the melt along y, relative to its melting point, by the substance's expansion.",
           .unit = "m/s^2",
           .fallback = 0.0}},
         "the cells whose centres they cover.");
@@ -48,16 +47,16 @@ Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
       beside_flow_(scheme_of(scene) == Scheme::conservative) {
     if (gravity_ != 0) lightness_.emplace(scene);
     if (const auto* buoyancy = scene.effect("buoyancy"); buoyancy && gravity_ != 0 && buoyancy->number("beta") != 0)
-        scene.refuse("effects.buoyancy.beta", "heat.lift lifts the melt by the substance's own expansion already", "one of them");
+        scene.refuse("effects.buoyancy.beta", "heat.lift already applies buoyancy by the substance's expansion", "give one of them");
     if (scene.effect("cooling"))
-        scene.refuse("effects.cooling", "cooling changes a temperature, and here heat is what is kept",
+        scene.refuse("effects.cooling", "cooling sets a temperature, and a scene with a substance conserves heat",
                      "heaters with a negative power, or sides with a temperature");
     if (const auto* diffusion = scene.effect("diffusion"); diffusion && diffusion->has("temperature"))
-        scene.refuse("effects.diffusion.temperature", "the substance conducts heat by its own conductivity");
+        scene.refuse("effects.diffusion.temperature", "the substance has its own conductivity");
     for (std::size_t i = 0; i < scene.root().tables("emitters").size(); ++i)
         if (scene.root().tables("emitters")[i].has("temperature"))
-            scene.refuse("emitters[" + std::to_string(i) + "].temperature", "an emitter that sets a temperature makes heat of nothing",
-                         "heaters have a power");
+            scene.refuse("emitters[" + std::to_string(i) + "].temperature",
+                         "an emitter that sets a temperature violates the heat balance of a substance", "use heaters, which have a power");
     auto& temperature = s.field("temperature");
     temperature.derived = true;
     liquid_ = Grid<real, D>(s.extent());
@@ -88,7 +87,7 @@ void Heat<D>::start(MacState<D>& s, const scene::Scene& scene) {
     const real coldest = -max_over(s.extent(), [&](const Index<D>& I) { return -T(I); });
     const char* place = scene.has("initial.temperature") ? "initial.temperature" : "substance";
     if (!(coldest > 0))
-        scene.refuse(place, "somewhere it is " + scene::number_text(coldest) + " K at the start", "temperatures are above 0 K");
+        scene.refuse(place, "the lowest temperature is " + scene::number_text(coldest) + " K at the start", "it must be greater than 0 K");
     for_each_cell(s.extent(), [&](const Index<D>& I) { h(I) = melting_.enthalpy(T(I)); });
     const real most = max_over(s.extent(), [&](const Index<D>& I) { return h(I); });
     if (most > melting_.boils_above)

@@ -39,7 +39,7 @@ Key sides_key() {
 /// Rejects keys of a scene that are not supported in parallel.
 void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
-    if (Heat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts");
+    if (Heat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting of a substance is");
     scene::refuse_hand(scene);
 }
 

@@ -49,8 +49,13 @@ struct Decay final : Relaxation<D> {
 };
 
 const scene::Key& rate_key() {
-    static const scene::Key key{
-        .name = "rate", .type = Type::number, .doc = "Part lost a second.", .unit = "1/s", .required = true, .min = 0, .steerable = true};
+    static const scene::Key key{.name = "rate",
+                                .type = Type::number,
+                                .doc = "Fraction lost per second.",
+                                .unit = "1/s",
+                                .required = true,
+                                .min = 0,
+                                .steerable = true};
     return key;
 }
 
@@ -60,7 +65,7 @@ EffectKind cooling() {
     return effect_kind<Cooling>(
         {"cooling",
          "Temperature relaxes to its surroundings (Newton's law).",
-         {rate_key(), {.name = "ambient", .type = Type::number, .doc = "What it relaxes to.", .unit = "K", .fallback = 0.0}},
+         {rate_key(), {.name = "ambient", .type = Type::number, .doc = "Temperature of the surroundings.", .unit = "K", .fallback = 0.0}},
          {"rate"}});
 }
 

@@ -124,8 +124,8 @@ void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
         }
     if (!(std::abs(net) > faces * std::numeric_limits<real>::epsilon() * gross)) return;
     scene.refuse(first,
-                 "the box is closed: " + scene::number_text(net) + (D == 2 ? " m^2/s" : " m^3/s") + " flow in and nothing lets them out",
-                 "a side of kind \"outflow\", or an inflow with the velocity to the outside that takes out as much");
+                 "the domain is closed: " + scene::number_text(net) + (D == 2 ? " m^2/s" : " m^3/s") + " flow in, but there is no outflow",
+                 "add a side of kind \"outflow\", or an inflow with outward velocity and the same flow rate");
 }
 
 /// Number of times at which solids are tested before the run, chosen to be cheap compared with its steps.
@@ -143,10 +143,10 @@ void refuse_squeezing(const scene::Scene& scene, MacState<D>& s, SolidPlacement<
         const Squeezed<D> region = find_squeezed(s, solids.solids());
         if (!region.any()) continue;
         const std::string path = "solids[" + std::to_string(region.solid) + "]";
-        scene.refuse(path + ".motion",
-                     path + " moves so that at t = " + scene::number_text(t) + " s " + text_of(region) +
-                         ": fluid that cannot be compressed has no way out",
-                     "a side of kind \"outflow\" in that room, or a second solid that moves out as much as this one moves in");
+        scene.refuse(
+            path + ".motion",
+            path + " moves so that at t = " + scene::number_text(t) + " s " + text_of(region) + ": an incompressible fluid has no outflow",
+            "add a side of kind \"outflow\" in that region, or a second solid that displaces the same volume in the opposite direction");
     }
     solids.place(s, 0);
 }
@@ -179,7 +179,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
     if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::implicit));
     if (max_over(state_.extent(), [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::fluid ? 1.0 : 0.0; }) == 0)
-        scene.refuse("solids", "the solids leave no cell for the fluid");
+        scene.refuse("solids", "solids cover all cells of the domain");
     if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_));
     state_.before = PaddedVelocity<D>(state_.u);
     state_.walls = walls_.get();
@@ -191,13 +191,13 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         set_initial_field(field.values, state_.u, scene, field.name);
     }
     if (heat_) {
-        if (solids_.moving()) scene.refuse("solids", "solids that move and a substance that melts are not simulated together");
+        if (solids_.moving()) scene.refuse("solids", "moving solids cannot be combined with a melting substance");
         heat_->start(state_, scene);
         if (hand_) heat_->follow(hand_, state_);
     }
     if (bodies_) {
         if (options_.scheme == Scheme::conservative)
-            scene.refuse("bodies", "scheme.advection = \"conservative\" takes a step in stages, and bodies move in whole steps",
+            scene.refuse("bodies", "scheme.advection = \"conservative\" does not support bodies",
                          "scheme.advection: semi_lagrangian, maccormack");
         bodies_->start(state_, solids_);
         const auto& all = bodies_->bodies().all();

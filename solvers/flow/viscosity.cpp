@@ -26,7 +26,7 @@ Time time_named(const std::string& name) {
 scene::Key time_key() {
     return {.name = "scheme",
             .type = Type::choice,
-            .doc = "In time: explicit limits the step to h^2/(2 dim nu); crank-nicolson is second order; implicit damps best.",
+            .doc = "Scheme in time: explicit limits the step to h^2/(2 dim nu); crank-nicolson is second order; implicit damps most.",
             .fallback = std::string("crank-nicolson"),
             .choices = {"explicit", "crank-nicolson", "implicit"}};
 }
@@ -241,12 +241,12 @@ scene::Key diffusivity(const char* name) {
 }  // namespace
 
 EffectKind viscosity() {
-    return effect_kind<Viscosity>({"viscosity", "Friction inside the fluid, with fluid.viscosity.", {time_key()}, {"fluid.viscosity"}});
+    return effect_kind<Viscosity>({"viscosity", "Viscous friction with fluid.viscosity.", {time_key()}, {"fluid.viscosity"}});
 }
 
 EffectKind diffusion() {
     return effect_kind<Diffusion>({"diffusion",
-                                   "Temperature or smoke spreads by itself.",
+                                   "Diffusion of temperature or smoke.",
                                    {time_key(), diffusivity("temperature"), diffusivity("smoke")},
                                    {"temperature", "smoke"}});
 }

@@ -9,58 +9,59 @@ using scene::Type;
 
 scene::Variant hand_schema() {
     const std::vector<Key> keyframe{
-        {.name = "time", .type = Type::number, .doc = "It holds from here until the next.", .unit = "s", .required = true, .min = 0},
+        {.name = "time",
+         .type = Type::number,
+         .doc = "Time from which it applies, until the next keyframe.",
+         .unit = "s",
+         .required = true,
+         .min = 0},
         {.name = "kind",
          .type = Type::choice,
-         .doc =
-             "push: towards `velocity`. pull: towards the brush's centre, with `speed` at its edge. pour: fluid with `velocity` fills what "
-             "is empty in the brush (smoke, where fluid fills the domain; columns of water rise with `speed`). drain: fluid (smoke) is "
-             "taken out "
-             "(columns sink with `speed`). heat: towards `temperature`, where a substance is named. grab: a spring to the brush's centre "
-             "on "
-             "the centre of mass of a body. off: nothing.",
+         .doc = "push: relax towards `velocity`. pull: relax towards the centre of the brush, with `speed` at its edge. pour: inflow with "
+                "`velocity` fills the empty part of the brush (smoke, where fluid fills the domain; columns of water rise with `speed`). "
+                "drain: fluid (smoke) is removed (columns sink with `speed`). heat: relax towards `temperature`; requires a substance. "
+                "grab: a spring from the centre of the brush to the centre of mass of a body. off: no forcing.",
          .fallback = std::string("push"),
          .choices = {hand_kinds.begin(), hand_kinds.end()}},
-        {.name = "centre", .type = Type::numbers, .doc = "Of the brush; obligatory but for off.", .unit = "m", .length = -1},
-        {.name = "radius", .type = Type::number, .doc = "Of the brush; obligatory but for off.", .unit = "m", .min = 0, .min_open = true},
+        {.name = "centre", .type = Type::numbers, .doc = "Of the brush; required except for off.", .unit = "m", .length = -1},
+        {.name = "radius", .type = Type::number, .doc = "Of the brush; required except for off.", .unit = "m", .min = 0, .min_open = true},
         {.name = "velocity",
          .type = Type::numbers,
-         .doc = "Target of push and pour.",
+         .doc = "Target velocity of push and pour.",
          .unit = "m/s",
          .fallback = std::vector<double>{0},
          .length = -1},
         {.name = "speed",
          .type = Type::number,
-         .doc = "Of pull; in a height field of pour and drain.",
+         .doc = "Target speed of pull; in a height field of pour and drain.",
          .unit = "m/s",
          .fallback = 0.0,
          .min = 0},
         {.name = "temperature",
          .type = Type::number,
-         .doc = "Of heat, where it is obligatory; no hotter than where the liquid boils.",
+         .doc = "Target temperature of heat, required there; at most the boiling temperature of the liquid.",
          .unit = "K",
          .min = 0,
          .min_open = true},
         {.name = "body",
          .type = Type::integer,
-         .doc = "Of grab: its number in the list `bodies`, from 0.",
+         .doc = "Body of grab: its number in the list `bodies`, from 0.",
          .fallback = std::int64_t{0},
          .min = 0}};
-    return {
-        "hand",
-        "A round brush by keyframes that pushes, pulls, pours, drains, heats, or takes hold of a body: du/dt = rate w (target - u) with w "
-        "= (1 - r^2/radius^2)^2 "
-        "inside it, taken exactly over the step; no target is faster than a cell a step. The integrals hand_impulse_x .., hand_mass and "
-        "hand_heat tell what it has given. It does not reach around periodic sides.",
-        {{.name = "rate",
-          .type = Type::number,
-          .doc = "How fast the fluid follows in the middle of the brush.",
-          .unit = "1/s",
-          .fallback = 50.0,
-          .min = 0,
-          .steerable = true},
-         {.name = "keyframes", .type = Type::tables, .doc = "In the order of time.", .keys = keyframe}},
-        {"rate"}};
+    return {"hand",
+            "Interactive forcing by a round brush with keyframes. It pushes, pulls, adds or removes fluid, heats, or holds a body: du/dt = "
+            "rate w (target - u) with w = (1 - r^2/radius^2)^2 inside the brush, integrated exactly over the step; targets are limited to "
+            "one cell per step. The integrals hand_impulse_x .., hand_mass and hand_heat record what it has added. The brush does not "
+            "extend across periodic sides.",
+            {{.name = "rate",
+              .type = Type::number,
+              .doc = "Relaxation rate at the centre of the brush.",
+              .unit = "1/s",
+              .fallback = 50.0,
+              .min = 0,
+              .steerable = true},
+             {.name = "keyframes", .type = Type::tables, .doc = "Keyframes in the order of time.", .keys = keyframe}},
+            {"rate"}};
 }
 
 namespace {
@@ -101,14 +102,15 @@ std::shared_ptr<Hand> make_hand(const scene::Scene& scene, std::initializer_list
         const std::string path = "effects.hand.keyframes[" + std::to_string(i) + "]";
         hand->keys.push_back({t.number("time"), hand_kind_named(t.text("kind")), point(t, "centre"), t.number_or("radius", 0),
                               point(t, "velocity"), t.number("speed"), t.number_or("temperature", 0), static_cast<int>(t.integer("body"))});
-        if (i > 0 && hand->keys[i].time < hand->keys[i - 1].time) scene.refuse(path + ".time", "it lies before that of the keyframe above");
+        if (i > 0 && hand->keys[i].time < hand->keys[i - 1].time)
+            scene.refuse(path + ".time", "it is before that of the previous keyframe");
         if (!hand->has(hand->keys[i].kind))
-            scene.refuse(path + ".kind", "the hand has no \"" + t.text("kind") + "\" in this scene", "it has " + kinds_of(*hand));
+            scene.refuse(path + ".kind", "the brush has no action \"" + t.text("kind") + "\" in this scene", "it has " + kinds_of(*hand));
         if (hand->keys[i].kind == HandKind::off) continue;
         if (hand->keys[i].kind == HandKind::heat && !t.has("temperature"))
-            scene.refuse(path, path + " has no \"temperature\"", "heat goes towards one");
+            scene.refuse(path, path + " has no \"temperature\"", "action heat requires it");
         for (const char* key : {"centre", "radius"})
-            if (!t.has(key)) scene.refuse(path, path + " has no \"" + key + "\"", "only a keyframe that is off needs none");
+            if (!t.has(key)) scene.refuse(path, path + " has no \"" + key + "\"", "only action \"off\" does not require it");
     }
     return hand;
 }

@@ -168,7 +168,7 @@ struct OfTriangles final : Shape<3> {
     real steepest() const override { return std::sqrt(3.0); }  // linear between nodes whose own are exact
     Vec<3> centre() const override { return posed.to_scene(posed.mesh->centre()); }
     std::string code() const override {
-        throw BadInput("a shape \"mesh\" is known to threads and not to devices: scheme.backend = \"threads\" runs it");
+        throw BadInput("a shape \"mesh\" is not supported on OpenCL devices: set scheme.backend = \"threads\"");
     }
     const PosedMesh* mesh() const override { return &posed; }
 };

@@ -15,24 +15,24 @@ namespace {
 void refuse_what_columns_cannot(const scene::Scene& scene, const State& state) {
     for (const char* effect : {"friction", "rain"})
         if (scene.effect(effect))
-            scene.refuse(std::string("effects.") + effect, "columns that pull their neighbours have no currents and keep their still depth",
-                         "scheme.model = \"shallow_water\" has both");
+            scene.refuse(std::string("effects.") + effect, "scheme.model = \"columns\" has no currents and keeps the still depth",
+                         "use scheme.model = \"shallow_water\"");
     if (state.push[0] != 0 || state.push[1] != 0)
-        scene.refuse("effects.gravity.g", "columns pull their neighbours along y only",
-                     "scheme.model = \"shallow_water\" runs down slopes");
+        scene.refuse("effects.gravity.g", "scheme.model = \"columns\" supports gravity along y only",
+                     "use scheme.model = \"shallow_water\" for slopes");
     if (scene.has("initial.velocity"))
-        scene.refuse("initial.velocity", "columns that pull their neighbours have no currents",
-                     "scheme.model = \"shallow_water\" has them");
+        scene.refuse("initial.velocity", "scheme.model = \"columns\" has no currents", "use scheme.model = \"shallow_water\"");
     for (std::size_t s = 0; s < scene.root().tables("solids").size(); ++s)
         if (scene.root().tables("solids")[s].has("motion"))
-            scene.refuse(fmt::format("solids[{}].motion", s), "columns keep their still depth: solids on their bed do not move",
-                         "floats are dragged through columns; scheme.model = \"shallow_water\" has a bed that moves");
+            scene.refuse(fmt::format("solids[{}].motion", s),
+                         "scheme.model = \"columns\" keeps the still depth: solids on the bed cannot move",
+                         "use floats, or scheme.model = \"shallow_water\" for a moving bed");
     for (int axis = 0; axis < scene.dim() - 1; ++axis)
         for (int end = 0; end < 2; ++end)
             if (const SideKind kind = state.sides(axis, end).kind;
                 kind != SideKind::wall && kind != SideKind::periodic && kind != SideKind::outflow)
-                scene.refuse(fmt::format("sides.{}_{}", "xz"[axis], end == 0 ? "min" : "max"),
-                             "nothing flows in where columns only pull their neighbours", "known: wall, outflow, open, periodic");
+                scene.refuse(fmt::format("sides.{}_{}", "xz"[axis], end == 0 ? "min" : "max"), "scheme.model = \"columns\" has no inflow",
+                             "known: wall, outflow, open, periodic");
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ Columns::Columns(const scene::Scene& scene)
     // the still depth is that below the mean surface, so that waves at the start are no deeper water
     const Plane& plane = state_.plane;
     const real wet = sum_of_columns(plane, [&](std::size_t c) { return state_.h[c] > state_.dry ? 1.0 : 0.0; });
-    if (wet == 0) scene.refuse("solver", "there is no water in this scene", "liquid, or initial.surface");
+    if (wet == 0) scene.refuse("solver", "the scene contains no water", "add liquid or initial.surface");
     const real still =
         sum_of_columns(plane, [&](std::size_t c) { return state_.h[c] > state_.dry ? state_.h[c] + state_.bed[c] : 0.0; }) / wet;
     for_each_column_near(plane, [&](std::size_t c) {
@@ -205,9 +205,8 @@ void Columns::check() const {
     });
     if (std::isnan(least)) throw NumericalFailure("surface", "surface is no longer finite");
     if (least < 0)
-        throw NumericalFailure("depth",
-                               "a column ran dry: columns that pull their neighbours keep their depth; scheme.model = \"shallow_water\" "
-                               "has dry ground");
+        throw NumericalFailure(
+            "depth", "a column became dry, which scheme.model = \"columns\" does not support; use scheme.model = \"shallow_water\"");
 }
 
 /// What whoever looks may read, from whoever owns it: the rows beside the cuts where each rank holds no more, else all. All ranks look at
@@ -228,7 +227,7 @@ void Columns::bring() const {
 std::string Columns::concern() const {
     if (floats_.empty()) return {};
     const real over = floats_.over_top(surface_);
-    return over > 0 ? fmt::format("water stands {:.3g} m above the top of a float: a height field has none over objects", over)
+    return over > 0 ? fmt::format("water is {:.3g} m above the top of a float: a height field cannot represent water over objects", over)
                     : std::string();
 }
 
@@ -300,8 +299,8 @@ void Columns::edited(const EditableField& field) {
     const OwnPlanes mine = held_.looking();
     for_each_column_near(state_.plane, [&](std::size_t c) {
         if (is_wet(c) ? surface_[c] <= state_.bed[c] : surface_[c] != state_.bed[c] || rate_[c] != 0)
-            throw BadInput(fmt::format("\"{}\" at {}: the bed lies at {} m, and columns that pull their neighbours {}", field.name, c,
-                                       state_.bed[c], is_wet(c) ? "do not run dry" : "wet no dry ground"));
+            throw BadInput(fmt::format("\"{}\" at {}: the bed is at {} m, and scheme.model = \"columns\" {}", field.name, c, state_.bed[c],
+                                       is_wet(c) ? "does not support drying" : "does not support wetting"));
     });
     state_.poured += volume() - volume_before_;
 }

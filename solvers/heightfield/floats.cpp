@@ -96,8 +96,8 @@ void refuse_beyond_sides(const scene::Scene& scene, const scene::Table& box, con
         const real slack = 1e-9 * (high - low), first = at[a] - size[a] / 2, last = at[a] + size[a] / 2;
         const bool all = first >= low - slack && last <= high + slack, none = last <= low || first >= high;
         if (heaves ? all : !none || box.has("motion")) return;
-        scene.refuse(path + ".at", fmt::format("this object reaches from {0} = {1:g} to {2:g} m; the domain from {3:g} to {4:g} m {5}",
-                                               name, first, last, low, high, none ? "has none of it" : "has not all of it"));
+        scene.refuse(path + ".at", fmt::format("this object extends from {0} = {1:g} to {2:g} m; the domain from {3:g} to {4:g} m {5}",
+                                               name, first, last, low, high, none ? "does not contain it" : "does not contain all of it"));
     };
     along('x', 0, plane.x0, plane.x0 + plane.nx * plane.dx);
     if (plane.dim == 3) along('z', 2, plane.z0, plane.z0 + plane.nz * plane.dz);
@@ -107,16 +107,16 @@ template <int D>
 std::unique_ptr<Body> make_box(const scene::Scene& scene, std::size_t n, const Plane& plane, real rho) {
     const scene::Table& table = scene.root().tables("floats")[n];
     const std::string path = fmt::format("floats[{}]", n);
-    if (!scene.effect("gravity")) scene.refuse(path, "without gravity nothing floats", "effects.gravity.g = [0, -9.81]");
+    if (!scene.effect("gravity")) scene.refuse(path, "floats require gravity", "effects.gravity.g = [0, -9.81]");
     for (const double s : table.numbers("size"))
         if (!(s > 0)) scene.refuse(path + ".size", "an object has a size greater than 0 along each axis");
     if (table.flag("heave") && table.number("density") >= 1)
-        scene.refuse(path + ".density", "what is as dense as water sinks, and a height field knows nothing below the surface",
-                     "density is relative to the water's; heave = false holds the object where its motion says");
+        scene.refuse(path + ".density", "an object at least as dense as water sinks, and a height field has no objects below the surface",
+                     "density is relative to the water's; heave = false prescribes the height by motion");
     refuse_beyond_sides(scene, table, path, plane);
     if (table.has("motion"))
         if (const std::string& kind = table.text("motion.kind"); kind == "rotation")
-            scene.refuse(path + ".motion", "objects on columns do not turn", "known: constant, sinusoidal, keyframes without angle");
+            scene.refuse(path + ".motion", "floats do not rotate", "known: constant, sinusoidal, keyframes without angle");
     return std::make_unique<Box<D>>(table, plane, rho);
 }
 
@@ -164,7 +164,7 @@ void Floats::locate(real t, const Field& surface, const Field& rate) {
         for (const Cover& c : covers_) {
             if (place_of_[c.column] < 0) add(c.column, surface[c.column] - bed_[c.column], surface, rate);
             if (depth_[c.column] > 0 && !(c.underside + height > bed_[c.column]))
-                throw NumericalFailure("float", fmt::format("object {} stands on the bed: there is no water below it", b));
+                throw NumericalFailure("float", fmt::format("object {} is in contact with the bed: there is no water below it", b));
             const bool clings = covered_[static_cast<std::size_t>(place_of_[c.column])].clings && !(bodies_[b]->mass() < infinity);
             const bool touches = clings || surface[c.column] > c.underside + height;
             contacts_.push_back({static_cast<std::size_t>(place_of_[c.column]), b, c.part, c.underside, touches});
@@ -192,7 +192,7 @@ void Floats::see_depths() {
         gap_[c.place] += c.part * (c.underside + bodies_[c.body]->height() - bed_[column]);
     }
     for (std::size_t i = 0; i < covered_.size(); ++i) {
-        if (free_[i] < -1e-9) throw NumericalFailure("float", "two objects are in the same place");
+        if (free_[i] < -1e-9) throw NumericalFailure("float", "two objects overlap");
         gap_[i] += free_[i] * depth_[covered_[i].column];
     }
 }

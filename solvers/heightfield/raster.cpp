@@ -21,8 +21,7 @@ constexpr std::size_t most_bytes = std::size_t{16} * most_cells;  // fifteen cha
 
 /// Before they are allocated: each takes a character at least, and a space before the next.
 void require_text_of(std::size_t cells, std::size_t bytes, const Words& words) {
-    if (bytes < 2 * cells - 1)
-        words.fail(fmt::format("{} cells are announced; the file has {} bytes, which is too few for them", cells, bytes));
+    if (bytes < 2 * cells - 1) words.fail(fmt::format("the header declares {} cells; the file has only {} bytes", cells, bytes));
 }
 
 std::string lower(std::string_view word) {
@@ -56,7 +55,7 @@ AscHeader read_header(Words& words, std::size_t bytes) {
             h.nodata = words.number(key);
         else
             words.fail(
-                fmt::format("\"{}\" is no key of an ESRI ASCII grid; known: ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, "
+                fmt::format("\"{}\" is not a key of an ESRI ASCII grid; known: ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, "
                             "cellsize, NODATA_value",
                             Words::shown(key)));
     }
@@ -68,7 +67,7 @@ AscHeader read_header(Words& words, std::size_t bytes) {
                                                    {h.cell.has_value(), "cellsize"}};
     for (const auto& [given, key] : needed)
         if (!given) words.fail(fmt::format("the header ends here and lacks {}", key));
-    if (static_cast<long>(*h.columns) * *h.rows > most_cells) words.fail("the grid has more cells than are read (2^28)");
+    if (static_cast<long>(*h.columns) * *h.rows > most_cells) words.fail("the grid has too many cells; at most 2^28");
     require_text_of(static_cast<std::size_t>(*h.columns) * static_cast<std::size_t>(*h.rows), bytes, words);
     return h;
 }
@@ -100,13 +99,13 @@ Raster read_asc(const std::filesystem::path& path, std::optional<real> nodata) {
         for (int i = 0; i < r.nx; ++i) {
             real value = words.number(fmt::format("height {} of row {} ({} x {} are announced)", i + 1, row + 1, r.nx, r.nz));
             if (h.nodata && value == *h.nodata) {
-                if (!nodata) words.fail("there is no data here; terrain.nodata says what height such cells have");
+                if (!nodata) words.fail("missing data; terrain.nodata gives a height to such cells");
                 value = *nodata;
             }
             r.value[static_cast<std::size_t>(r.nz - 1 - row) * static_cast<std::size_t>(r.nx) + static_cast<std::size_t>(i)] = value;
         }
     if (const std::string_view more = words.next(); !more.empty())
-        words.fail(fmt::format("\"{}\" stands behind the last of {} x {} heights", Words::shown(more), r.nx, r.nz));
+        words.fail(fmt::format("\"{}\" follows the last of {} x {} heights", Words::shown(more), r.nx, r.nz));
     return r;
 }
 
@@ -119,7 +118,7 @@ Raster read_pgm(const std::filesystem::path& path) {
     const bool binary = magic == "P5";
     Raster r;
     r.nx = words.count("the width", static_cast<real>(most_cells)), r.nz = words.count("the height", static_cast<real>(most_cells));
-    if (static_cast<long>(r.nx) * r.nz > most_cells) words.fail("the picture has more cells than are read (2^28)");
+    if (static_cast<long>(r.nx) * r.nz > most_cells) words.fail("the picture has too many pixels; at most 2^28");
     const int most = words.count("the value of white", 65535);
     const std::size_t cells = static_cast<std::size_t>(r.nx) * static_cast<std::size_t>(r.nz);
     if (!binary) {
@@ -127,7 +126,7 @@ Raster read_pgm(const std::filesystem::path& path) {
         r.value.resize(cells);
         for (real& v : r.value) {
             v = words.number("a shade of grey");
-            if (v < 0 || v > most || v != std::floor(v)) words.fail(fmt::format("{} is no shade from 0 to {}", v, most));
+            if (v < 0 || v > most || v != std::floor(v)) words.fail(fmt::format("{} is not a grey value from 0 to {}", v, most));
             v /= most;
         }
         return r;

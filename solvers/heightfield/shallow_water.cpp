@@ -30,7 +30,7 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
       hand_(geometry::make_hand(scene, geometry::moving_kinds)),
       cfl_(scene.number("time.cfl")) {
     if (hand_) effects_.add("hand", hand_effect(hand_));
-    if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column a step: the depth may become negative", "cfl is at most 0.5");
+    if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column per step: the depth may become negative", "cfl is at most 0.5");
     if (raised_ && raised_->moves())
         terrain_ = make_terrain(scene, state_.plane);
     else

@@ -24,8 +24,8 @@ Side read_side(const scene::Scene& scene, const std::string& path, int axis, int
     Side side;
     if (kind == "wall") {
         if (scene.text(path + ".slip") == "no")
-            scene.refuse(path + ".slip", "a height field has no boundary layers: its walls are free of friction",
-                         "effects.friction acts on the bed");
+            scene.refuse(path + ".slip", "a height field has no boundary layers: its walls are free slip",
+                         "use effects.friction for friction on the bed");
     } else if (kind == "periodic") {
         side.kind = SideKind::periodic;
     } else if (kind == "outflow" || kind == "open") {
@@ -44,7 +44,7 @@ Side read_side(const scene::Scene& scene, const std::string& path, int axis, int
         side.kind = SideKind::level;
         side.value = scene.number(path + ".level");
     } else {
-        scene.refuse(path + ".kind", "a height field has no wall that drags water along",
+        scene.refuse(path + ".kind", "a height field does not support walls that drag water",
                      "known: wall, inflow, outflow, open, discharge, level, periodic");
     }
     return side;
@@ -58,7 +58,7 @@ Sides::Sides(const scene::Scene& scene) {
             if (const std::string path = std::string("sides.") + "xz"[axis] + (end == 0 ? "_min" : "_max"); scene.has(path))
                 side[static_cast<std::size_t>(2 * axis + end)] = read_side(scene, path, axis, end);
     for (const std::string& name : scene.root().texts("grid.periodic")) {
-        if (name == "y") scene.refuse("grid.periodic", "a height field ends at its bed and at its surface: y does not repeat");
+        if (name == "y") scene.refuse("grid.periodic", "a height field cannot be periodic along y");
         const std::size_t first = name == "x" ? 0 : 2;
         side[first].kind = side[first + 1].kind = SideKind::periodic;
     }

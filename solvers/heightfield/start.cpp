@@ -89,10 +89,10 @@ Raster read_raster(const Scene& scene, const Plane& plane) {
     if (!covers)
         scene.refuse(
             "terrain.file",
-            fmt::format("the grid reaches from [{:g}, {:g}] to [{:g}, {:g}] m; the domain from [{:g}, {:g}] to [{:g}, {:g}] m is not "
-                        "within it",
-                        r.x0, r.z0, r.x1(), r.z1(), plane.x0, plane.z0, x1, z1),
-            "terrain.corner says where the grid's lower corner lies");
+            fmt::format(
+                "the grid reaches from [{:g}, {:g}] to [{:g}, {:g}] m; it does not contain the domain from [{:g}, {:g}] to [{:g}, {:g}] m",
+                r.x0, r.z0, r.x1(), r.z1(), plane.x0, plane.z0, x1, z1),
+            "terrain.corner sets the position of the grid's lower corner");
     return r;
 }
 
@@ -139,11 +139,11 @@ void pour(const Scene& scene, State& state) {
             state.h[c] = std::max(state.h[c], water.high - bed);
         });
         if (const std::int64_t c = first_of_rows(plane, bad); c >= 0)
-            scene.refuse(fmt::format("liquid[{}]", s),
-                         fmt::format("this water hangs above the bed at x = {:g}, z = {:g}: in a height field each column is filled from "
-                                     "its bed to one surface",
-                                     plane.x(static_cast<int>(c % plane.nx)), plane.z(static_cast<int>(c / plane.nx))),
-                         "solvers \"mac_water\", \"pbf\" and \"sph\" have drops and overturning waves");
+            scene.refuse(
+                fmt::format("liquid[{}]", s),
+                fmt::format("this water is above air at x = {:g}, z = {:g}: a height field fills each column from its bed to one surface",
+                            plane.x(static_cast<int>(c % plane.nx)), plane.z(static_cast<int>(c / plane.nx))),
+                "use solver \"mac_water\", \"pbf\" or \"sph\" for drops and overturning waves");
     }
 }
 
@@ -173,17 +173,17 @@ public:
     Raised(const Scene& scene, const Plane& plane) : plane_(plane), solids_(scene) {
         for (std::size_t s = 0; s < solids_.count(); ++s)
             if (solids_[s].no_slip)
-                scene.refuse(fmt::format("solids[{}].slip", s), "a height field has no boundary layers: its solids are free of friction");
+                scene.refuse(fmt::format("solids[{}].slip", s), "a height field has no boundary layers: its solids are free slip");
         Field terrain = make_terrain(scene, plane), bed = terrain;
         solids_.set_time(0);
         for (std::size_t s = 0; s < solids_.count(); ++s)
             if (const std::int64_t c = raise(s, terrain, bed, true); c >= 0)
                 scene.refuse(
                     fmt::format("solids[{}]", s),
-                    fmt::format("this solid has air or water below it at x = {:g}, z = {:g}: in a height field a solid stands on the "
-                                "bed, which it raises",
-                                plane_.x(static_cast<int>(c % plane_.nx)), plane_.z(static_cast<int>(c / plane_.nx))),
-                    "scheme.model = \"columns\" has floating and dragged objects (floats)");
+                    fmt::format(
+                        "this solid has air or water below it at x = {:g}, z = {:g}: in a height field a solid must stand on the bed",
+                        plane_.x(static_cast<int>(c % plane_.nx)), plane_.z(static_cast<int>(c / plane_.nx))),
+                    "use floats of scheme.model = \"columns\" for floating and dragged objects");
     }
     void at(real t, const Field& terrain, Field& bed) override {
         solids_.set_time(t);
@@ -247,8 +247,7 @@ void start(const Scene& scene, State& state) {
         raised->at(0, terrain, state.bed);
     }
     if (scene.has("initial.surface")) {
-        if (!scene.root().tables("liquid").empty())
-            scene.refuse("initial.surface", "the water is given twice: by its surface, and as liquid");
+        if (!scene.root().tables("liquid").empty()) scene.refuse("initial.surface", "give either initial.surface or liquid, not both");
         const Field surface = formula_field(scene, "initial.surface", state.plane);
         for_each_column_near(state.plane, [&](std::size_t c) { state.h[c] = std::max(0.0, surface[c] - state.bed[c]); });
     } else if (state.plane.dim == 2) {
@@ -266,7 +265,7 @@ State::State(const Scene& scene) : plane(scene), sides(scene), rho(scene.number(
     if (const auto* gravity = scene.effect("gravity")) {
         const auto& a = gravity->numbers("g");
         if (a[1] > nothing)
-            scene.refuse("effects.gravity.g", "gravity points up: the water of a height field lies below its surface", "g = [0, -9.81]");
+            scene.refuse("effects.gravity.g", "gravity points up: a height field requires gravity downwards", "g = [0, -9.81]");
         g = std::max(0.0, -a[1]);
         push[0] = a[0];
         if (plane.dim == 3) push[1] = a[2];

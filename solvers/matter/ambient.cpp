@@ -22,7 +22,7 @@ bool all_say(const scene::Scene& scene, const std::vector<scene::Table>& frames,
     for (std::size_t i = 0; i < frames.size(); ++i)
         if (!says(frames[i])) {
             const std::string path = "heat.ambient.keyframes[" + std::to_string(i) + "]";
-            scene.refuse(path, path + " says no " + what + ", and others do", "each keyframe, or none");
+            scene.refuse(path, path + " has no " + what + ", but other keyframes do", "give it in each keyframe, or in none");
         }
     return true;
 }
@@ -32,27 +32,26 @@ Key ambient_key(const char* doc, const char* pressure_doc) {
         .name = "ambient",
         .type = Type::table,
         .doc = "The surroundings.",
-        .keys = {temperature_key("Of the surroundings: what walls with an `exchange` see."),
+        .keys = {temperature_key("Temperature of the surroundings, used by walls with an `exchange`."),
                  {.name = "keyframes",
                   .type = Type::tables,
                   .doc = doc,
-                  .keys = {{.name = "t", .type = Type::number, .doc = "The moment.", .unit = "s", .required = true},
-                           temperature_key("Of the surroundings."),
+                  .keys = {{.name = "t", .type = Type::number, .doc = "Time of the keyframe.", .unit = "s", .required = true},
+                           temperature_key("Temperature of the surroundings."),
                            {.name = "pressure", .type = Type::number, .doc = pressure_doc, .unit = "Pa", .min = 0, .min_open = true}}}}};
 }
 
 }  // namespace
 
 Key ambient_key() {
-    return ambient_key("Temperature and pressure in the course of time, on straight lines between these moments.",
-                       "At which it melts and boils, in place of heat.pressure.");
+    return ambient_key("Temperature and pressure over time, interpolated linearly between keyframes.",
+                       "Pressure of melting and boiling, instead of heat.pressure.");
 }
 
 Key ambient_key_of_particles() {
-    return ambient_key(
-        "Temperature and pressure in the course of time, on straight lines between these moments.",
-        "At which it boils, in place of heat.pressure. Only with heat.vapour; latent heats, heat capacities and where it melts "
-        "are those of the lowest.");
+    return ambient_key("Temperature and pressure over time, interpolated linearly between keyframes.",
+                       "Pressure of boiling, instead of heat.pressure. Only with heat.vapour; latent heats, heat capacities and the "
+                       "melting point are those of the lowest pressure.");
 }
 
 Ambient::Ambient(const scene::Scene& scene) {
@@ -66,7 +65,7 @@ Ambient::Ambient(const scene::Scene& scene) {
         if (!(frames[i].number("t") > frames[i - 1].number("t"))) {
             const std::string path = "heat.ambient.keyframes[" + std::to_string(i) + "].t";
             scene.refuse(path, path + " is " + scene::number_text(frames[i].number("t")) + " s, not after " +
-                                   scene::number_text(frames[i - 1].number("t")) + " s of the frame before");
+                                   scene::number_text(frames[i - 1].number("t")) + " s of the previous keyframe");
         }
     const auto take = [&](std::vector<Frame>& list, const char* what) {
         if (frames.empty() || !all_say(scene, frames, what)) return;
@@ -74,7 +73,7 @@ Ambient::Ambient(const scene::Scene& scene) {
         for (const auto& frame : frames) list.push_back({frame.number("t"), frame.number(what)});
     };
     if (table.has("temperature") && !frames.empty() && frames[0].has("temperature"))
-        scene.refuse("heat.ambient.temperature", "the keyframes say a temperature already", "one of the two");
+        scene.refuse("heat.ambient.temperature", "the keyframes already define a temperature", "give one of the two");
     take(temperature_, "temperature");
     take(pressure_, "pressure");
 }

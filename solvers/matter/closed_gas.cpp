@@ -38,9 +38,8 @@ scene::Key ClosedGas::key() {
     return {.name = "enclosed_vapour",
             .type = scene::Type::number,
             .doc =
-                "The box is closed and rigid, and what is not liquid is the substance's vapour alone; this is its mass at the start (in 2D "
-                "of a metre of depth). Its one pressure is of its mass, its volume and the surface's temperature, and takes the place of "
-                "vapour_pressure.",
+                "Initial mass of the vapour (in 2D per metre of depth) in a closed rigid box that contains only liquid and vapour. Its "
+                "uniform pressure follows from mass, volume and surface temperature and replaces vapour_pressure.",
             .unit = "kg",
             .min = 0};
 }
@@ -48,11 +47,12 @@ scene::Key ClosedGas::key() {
 ClosedGas::ClosedGas(const scene::Scene& scene, thermo::SubstancePtr substance, const Melting& melting, real space, real liquid, real T)
     : substance_(std::move(substance)), space_(space), mass_(scene.number("heat.enclosed_vapour")) {
     if (!(scene.number("heat.evaporation") > 0))
-        scene.refuse("heat.enclosed_vapour", "the vapour is closed in, and nothing evaporates or condenses", "heat.evaporation above 0");
+        scene.refuse("heat.enclosed_vapour", "the vapour is enclosed, but evaporation and condensation are off",
+                     "heat.evaporation above 0");
     if (scene.number("heat.vapour_pressure") != 0)
-        scene.refuse("heat.vapour_pressure", "a gas that is closed in has the pressure of its own mass",
+        scene.refuse("heat.vapour_pressure", "the pressure of an enclosed gas follows from its mass",
                      "heat.enclosed_vapour, or heat.vapour_pressure");
-    if (!(space_ > liquid)) scene.refuse("heat.enclosed_vapour", "the liquid fills the box: there is no room for vapour");
+    if (!(space_ > liquid)) scene.refuse("heat.enclosed_vapour", "the liquid fills the box: no volume is left for vapour");
     energy_ = mass_ * energy_of_vapour(*substance_, melting, T);
     fill(T, liquid);
 }

@@ -20,7 +20,7 @@ Key substance_key_of_heat(const std::string& doc) {
 Key pressure_key() {
     return {.name = "pressure",
             .type = Type::number,
-            .doc = "At which it melts and boils.",
+            .doc = "Ambient pressure, which determines melting and boiling points.",
             .unit = "Pa",
             .fallback = 101325.0,
             .min = 0,
@@ -33,11 +33,11 @@ Key heaters_key(const std::string& doc) {
             .doc = doc,
             .keys = {{.name = "power",
                       .type = Type::number,
-                      .doc = "Heat given off; in 2D by a metre of depth. Negative: a cooler.",
+                      .doc = "Heating power; in 2D per metre of depth. Negative: a cooler.",
                       .unit = "W",
                       .required = true},
-                     {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
-                     {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
+                     {.name = "start", .type = Type::number, .doc = "Start time.", .unit = "s", .fallback = 0.0, .min = 0},
+                     {.name = "end", .type = Type::number, .doc = "End time; unlimited if absent.", .unit = "s", .min = 0}},
             .selector = "shape",
             .variants_from = &scene::shapes};
 }
@@ -53,20 +53,17 @@ std::vector<Key> keys_on_a_grid(const std::string& lets, std::vector<Key> own, c
                     .min = 0,
                     .min_open = true});
     return {substance_key_of_heat("Naming it lets " + lets + ", with `fluid.density` for solid and liquid alike."),
-            {.name = "heat", .type = Type::table, .doc = "How a substance takes up heat. Only where `substance` is named.", .keys = keys},
-            heaters_key("Regions that give off heat, evenly over " + over + " Only where `substance` is named.")};
+            {.name = "heat", .type = Type::table, .doc = "Heat transfer of a substance. Requires `substance`.", .keys = keys},
+            heaters_key("Heat sources, distributed uniformly over " + over + " Requires `substance`.")};
 }
 
 scene::Variant wall_with_exchange() {
     return {"wall",
             "",
-            {{.name = "heat_flux",
-              .type = Type::number,
-              .doc = "Heat that passes into the fluid. Only where `substance` is named.",
-              .unit = "W/m^2"},
+            {{.name = "heat_flux", .type = Type::number, .doc = "Heat flux into the fluid. Requires `substance`.", .unit = "W/m^2"},
              {.name = "exchange",
               .type = Type::number,
-              .doc = "Heat that comes in for each kelvin by which the surroundings, heat.ambient, are warmer than the wall's inner face.",
+              .doc = "Heat transfer coefficient between the surroundings, heat.ambient, and the inner face of the wall.",
               .unit = "W/(m^2 K)",
               .min = 0,
               .min_open = true}}};
@@ -85,13 +82,13 @@ thermo::HeatCurve curve_at(real pressure, const std::string& path, const scene::
 }
 
 void check_temperature(const scene::Scene& scene, const std::string& path, real T) {
-    if (!(T > 0)) scene.refuse(path, "a temperature of " + scene::number_text(T) + " K", "temperatures are above 0 K");
+    if (!(T > 0)) scene.refuse(path, "a temperature of " + scene::number_text(T) + " K", "it must be greater than 0 K");
 }
 
 void check_heater(const scene::Scene& scene, std::size_t i) {
     const auto& table = scene.root().tables("heaters")[i];
     const std::string path = "heaters[" + std::to_string(i) + "]";
-    if (!(table.number_or("end", infinity) > table.number("start"))) scene.refuse(path + ".end", path + ".end is not after its start");
+    if (!(table.number_or("end", infinity) > table.number("start"))) scene.refuse(path + ".end", path + ".end must be after its start");
 }
 
 }  // namespace weir::matter

@@ -14,10 +14,11 @@ void refuse_density(const scene::Scene& scene, const thermo::Substance& substanc
                melt = substance.warmer_density(thermo::Boundary::melting, melts);
     const real rho = scene.number("fluid.density");
     if (rho >= 0.9 * std::min(ice, melt) && rho <= 1.1 * std::max(ice, melt)) return;
-    scene.refuse("fluid.density",
-                 "fluid.density is " + scene::number_text(rho) + " kg/m^3, which is no density of " + std::string(substance.name()),
-                 "solid " + scene::number_text(std::round(ice * 10) / 10) + ", liquid " + scene::number_text(std::round(melt * 10) / 10) +
-                     " kg/m^3: this solver takes one for both");
+    scene.refuse(
+        "fluid.density",
+        "fluid.density is " + scene::number_text(rho) + " kg/m^3, which does not match the density of " + std::string(substance.name()),
+        "solid " + scene::number_text(std::round(ice * 10) / 10) + ", liquid " + scene::number_text(std::round(melt * 10) / 10) +
+            " kg/m^3: this solver uses one density for solid and liquid");
 }
 
 }  // namespace
@@ -42,7 +43,7 @@ Melting melting_of(const scene::Scene& scene, const std::string& solver) {
         scene.refuse(
             "heat.pressure",
             "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance->name() + " is never a liquid that freezes",
-            "solver \"" + solver + "\" knows solid and liquid");
+            "solver \"" + solver + "\" supports solid and liquid only");
     const Melting m = melting_at(*substance, scene.number("heat.pressure"));
     refuse_density(scene, *substance, m.T);
     return m;

@@ -14,10 +14,10 @@ Key positive(const char* name, const char* doc, const char* unit) {
 }
 
 Key conductivity() {
-    return {.name = "conductivity", .type = Type::number, .doc = "Of heat.", .unit = "W/(m K)", .fallback = 0.0, .min = 0};
+    return {.name = "conductivity", .type = Type::number, .doc = "Thermal conductivity.", .unit = "W/(m K)", .fallback = 0.0, .min = 0};
 }
 
-Key heat_capacity() { return positive("heat_capacity", "At constant pressure.", "J/(kg K)"); }
+Key heat_capacity() { return positive("heat_capacity", "Specific heat capacity at constant pressure.", "J/(kg K)"); }
 
 Key point(const char* name, const char* doc) {
     return {.name = name, .type = Type::numbers, .doc = doc, .unit = "K, Pa", .required = true, .min = 0, .min_open = true, .length = 2};
@@ -56,7 +56,7 @@ thermo::Constants constants_of(const scene::Table& table) {
 Key substance_key() {
     Key key{.name = "substance",
             .type = Type::table,
-            .doc = "What the matter of the scene is: its states, the lines between them, latent heats and constants.",
+            .doc = "Substance of the scene: its phases, phase boundaries, latent heats and constants.",
             .required = true,
             .selector = "name",
             .example = "substance = \"water\""};
@@ -65,14 +65,13 @@ Key substance_key() {
     key.variants = {
         {"water", "Water by the formulas of IAPWS; `weir describe substance water` prints it.", {}},
         {"own",
-         "A substance by constants; its lines follow by Clausius and Clapeyron's equation through both points.",
-         {point("triple", "Where solid, liquid and vapour meet: temperature and pressure."),
-          point("critical", "Where liquid and vapour become one: temperature and pressure."), fusion,
-          positive("vaporisation", "Latent heat of boiling.", "J/kg"), state("solid", {density(), heat_capacity(), conductivity()}),
+         "A substance defined by constants; its phase boundaries follow from the Clausius-Clapeyron equation through both points.",
+         {point("triple", "Triple point: temperature and pressure."), point("critical", "Critical point: temperature and pressure."),
+          fusion, positive("vaporisation", "Latent heat of boiling.", "J/kg"), state("solid", {density(), heat_capacity(), conductivity()}),
           state("liquid", {density(), heat_capacity(), conductivity(), expansion}), state("vapour", {heat_capacity(), conductivity()})}},
-        {"ideal_gas", "The gas of p = rho R T, which has no other state.", {gas_constant(), heat_capacity(), conductivity()}},
+        {"ideal_gas", "Ideal gas, p = rho R T, without other phases.", {gas_constant(), heat_capacity(), conductivity()}},
         {"van_der_waals",
-         "The fluid of van der Waals's equation, which boils by Maxwell's rule of equal areas and does not freeze.",
+         "Van der Waals fluid, which boils according to Maxwell's equal-area rule and does not freeze.",
          {gas_constant(), point("critical", "The critical temperature and pressure."), state("liquid", {heat_capacity(), conductivity()}),
           state("vapour", {heat_capacity(), conductivity()})}}};
     return key;

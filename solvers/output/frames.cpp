@@ -74,8 +74,8 @@ std::int64_t kept_of(const std::filesystem::path& pvd, std::int64_t kept, real t
     if (!entries.empty() && entries[0].time > 0)
         return std::count_if(entries.begin(), entries.end(), [&](const SeriesEntry& entry) { return entry.time <= t; });
     if (static_cast<std::int64_t>(entries.size()) < kept)
-        throw BadInput(pvd.string() + " has " + std::to_string(entries.size()) + " frames, and the checkpoint was taken after " +
-                       std::to_string(kept) + ": continue in the folder of the first run, or in a new one");
+        throw BadInput(pvd.string() + " has " + std::to_string(entries.size()) + " frames, but the checkpoint was written after " +
+                       std::to_string(kept) + ": continue in the folder of the original run, or in a new one");
     return kept;
 }
 

@@ -15,7 +15,7 @@ std::vector<real> frame_times(const std::filesystem::path& folder) {
         times.clear();
         for (const auto& entry : read_series(folder / name)) times.push_back(entry.time);
     }
-    if (times.empty()) throw BadInput(folder.string() + " holds no series of frames");
+    if (times.empty()) throw BadInput(folder.string() + " contains no series of frames");
     return times;
 }
 
@@ -50,7 +50,7 @@ void read_image(const std::filesystem::path& file, int dim, FrameData& frame) {
     for (std::size_t a = 0; a < 3; ++a) {
         const int cells = image.points[a] - 1;
         if ((cells < 1) == (static_cast<int>(a) < dim) || !image.image)
-            throw BadInput(file.string() + ": this frame holds no grid of " + std::to_string(dim) + " dimensions, which the scene has");
+            throw BadInput(file.string() + ": this frame contains no grid of " + std::to_string(dim) + " dimensions, which the scene has");
         if (cells < 1) continue;
         frame.grid.cells[a] = cells, frame.grid.origin[a] = image.origin[a], frame.grid.spacing[a] = image.spacing[a];
     }
@@ -60,7 +60,7 @@ void read_image(const std::filesystem::path& file, int dim, FrameData& frame) {
 
 void read_particles(const std::filesystem::path& file, std::map<std::string, Components>& fields) {
     const ReadFile points = read_vtk(file);
-    if (points.image) throw BadInput(file.string() + ": this frame holds no points");
+    if (points.image) throw BadInput(file.string() + ": this frame contains no points");
     for (const ReadArray& array : points.point_data) fields[array.name] = components_of(array.values, array.components);
     fields["position"] = components_of(points.position, 3);
 }

@@ -56,10 +56,10 @@ RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene, const std:
 
 void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string& by_all, const std::vector<Traffic>& sent,
                        const std::vector<RankState>& states) {
-    json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank holds whole grids"}};
-    if (holds == Holds::own_planes) ranks["storage"] = "every rank holds its own planes and those near its cuts";
+    json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank stores whole grids"}};
+    if (holds == Holds::own_planes) ranks["storage"] = "every rank stores its slab and ghost planes";
     if (holds == Holds::own_particles)
-        ranks["cut"] = "as many particles to each", ranks["storage"] = "every rank holds its own particles and those near its cuts";
+        ranks["cut"] = "equal numbers of particles", ranks["storage"] = "every rank stores its own and ghost particles";
     if (!by_all.empty()) ranks["every_rank_does"] = by_all;
     for (const Traffic& rank : sent) {
         ranks["messages"].push_back(rank.messages);

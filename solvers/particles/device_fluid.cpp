@@ -78,8 +78,8 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
     : device_(backend::open_device(setup.device)), host_(std::move(start)), support_(setup.support), effects_(effects) {
     if (!device_->info().doubles)
         throw BadInput(device_->info().name +
-                       " has no double precision (cl_khr_fp64), in which the state of particles is kept: choose another "
-                       "device (weir list devices) or the backend threads");
+                       " has no double precision (cl_khr_fp64), which the state of particles requires: choose another device (weir list "
+                       "devices) or the backend threads");
     solid_ = !host_.domain.solids.empty();
     for (int axis = 0; axis < D; ++axis) {
         const auto& domain = host_.domain;

@@ -95,7 +95,7 @@ void DeviceFluid<D>::grow_list(int needed) {
     const auto& info = device_->info();
     if (bytes > info.largest || device_->allocated() - list.bytes + bytes > info.memory)
         throw NumericalFailure("neighbours", "the neighbour list needs " + std::to_string(bytes >> 20) + " MiB, more than " + info.name +
-                                                 " has left: too many particles are closer than the support");
+                                                 " has available: too many particles are closer than the support");
     list = {};
     list = device_->alloc(bytes);
     room_ = static_cast<int>(room);

@@ -18,7 +18,7 @@ Domain<D>::Domain(const scene::Scene& scene) : sides(scene), solids(scene) {
     }
     for (int a = 1; a < D; ++a)
         if (std::abs(size[a] / cells[a] - spacing) > 1e-6 * spacing)
-            scene.refuse("grid.cells", "particles need cubic cells: their width is the particles' spacing");
+            scene.refuse("grid.cells", "particles require cubic cells: the cell width is the particles' spacing");
     if (!scene.has("bodies") || scene.root().tables("bodies").empty()) return;
     bodies = std::make_shared<rigid::Bodies<D>>(scene);
     bodies->join(solids);
@@ -93,15 +93,16 @@ void refuse_idle_walls(const scene::Scene& scene, const Domain<D>& domain, bool 
             const auto& side = domain.sides.side(a, end);
             const std::string path = std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max");
             if (side.kind == geometry::SideKind::inflow)
-                scene.refuse(path, "particles do not enter through a side", "let in by emitters; a side of kind \"open\" lets them out");
+                scene.refuse(path, "particles cannot enter through a side",
+                             "use emitters for inflow and a side of kind \"open\" for outflow");
             if (side.no_slip && domain.walled(a, end) && !viscous)
-                scene.refuse(path, "without viscosity no liquid sticks to a wall", instead);
+                scene.refuse(path, "slip = \"no\" of a wall requires viscosity", instead);
         }
     for (std::size_t i = 0; i < domain.solids.count(); ++i)
         if (domain.solids[i].no_slip && !viscous)
             scene.refuse(
                 domain.solids[i].free ? "bodies[" + std::to_string(i - domain.first_body()) + "]" : "solids[" + std::to_string(i) + "]",
-                domain.solids[i].free ? "without viscosity no liquid sticks to a body" : "without viscosity no liquid sticks to a solid",
+                domain.solids[i].free ? "slip = \"no\" of a body requires viscosity" : "slip = \"no\" of a solid requires viscosity",
                 instead);
 }
 

@@ -107,13 +107,13 @@ std::vector<Offer<D>> offers() {
     const Key centre{.name = "centre", .type = Type::numbers, .doc = "Where it vanishes.", .unit = "m", .required = true, .length = -1};
     const Key c{.name = "c",
                 .type = Type::number,
-                .doc = "How much of the mean is taken in each step.",
+                .doc = "Weight of the neighbours' mean velocity in each step.",
                 .fallback = 0.01,
                 .min = 0.0,
                 .max = 1.0,
                 .steerable = true};
     const Key epsilon{
-        .name = "epsilon", .type = Type::number, .doc = "Its strength.", .unit = "m/s", .required = true, .min = 0, .steerable = true};
+        .name = "epsilon", .type = Type::number, .doc = "Strength.", .unit = "m/s", .required = true, .min = 0, .steerable = true};
     return {{scene::gravity_effect("A constant acceleration."), make<D, Gravity<D>>},
             {{"central_force", "An acceleration -omega^2 (x - centre).", {omega, centre}, {"omega"}}, make<D, CentralForce<D>>},
             {{"xsph", "Velocities are smoothed over neighbours (Schechter & Bridson 2012).", {c}, {"c"}}, make<D, Xsph<D>>},

@@ -43,7 +43,7 @@ Emitters<D>::Emitters(const scene::Scene& scene, const Domain<D>& domain) {
         for (int a = 1; a < D; ++a)
             if (std::abs(e.velocity[a]) > std::abs(e.velocity[axis])) axis = a;
         const std::string path = "emitters[" + std::to_string(emitters_.size()) + "]";
-        if (e.velocity[axis] == 0) scene.refuse(path, "an emitter of particles needs a velocity");
+        if (e.velocity[axis] == 0) scene.refuse(path, "an emitter of particles requires a velocity");
         e.period = domain.spacing / std::abs(e.velocity[axis]);
         e.sites = upstream_sites<D>(*geometry::make_shape<D>(table), domain, axis, e.velocity[axis] > 0);
         if (e.sites.empty()) scene.refuse(path, "the emitter is thinner than the particles' spacing: it covers the centre of no cell");

@@ -67,7 +67,7 @@ Key initial_key() {
 Key sinks_key() {
     return {.name = "sinks",
             .type = Type::tables,
-            .doc = "Regions that take particles out.",
+            .doc = "Sinks: regions that remove particles.",
             .selector = "shape",
             .variants_from = &scene::shapes};
 }
@@ -102,9 +102,9 @@ void refuse_nothing(const scene::Scene& scene, const Fluid<D>& fluid) {
     const std::string spacing = scene::number_text(fluid.domain.spacing);
     scene.refuse(
         "liquid",
-        named ? "no particle stands in the liquid: it lies inside solids, or is thinner than the " + spacing + " m between two particles"
-              : "a scene of particles needs liquid: at least one shape, or an emitter that gives some before the end",
-        named ? "particles stand at centres of cells" : "");
+        named ? "the liquid contains no particle: it lies inside solids, or is thinner than the particle spacing of " + spacing + " m"
+              : "a scene of particles requires liquid: at least one shape, or an emitter that starts before time.end",
+        named ? "particles start at cell centres" : "");
 }
 
 }  // namespace

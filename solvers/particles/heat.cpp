@@ -117,8 +117,8 @@ template <int D>
 int Heat<D>::parts(real dt) {
     const real wanted = std::ceil(dt / stable_dt_ * (1 - 1e-9));
     if (!(wanted <= most_parts))
-        throw NumericalFailure("temperature", "conduction of heat would take more than " + std::to_string(most_parts) +
-                                                  " parts of a step: it is stable up to " + std::to_string(stable_dt_) + " s");
+        throw NumericalFailure("temperature", "heat conduction requires more than " + std::to_string(most_parts) +
+                                                  " substeps per step: it is stable up to " + std::to_string(stable_dt_) + " s");
     return parts_ = std::max(1, static_cast<int>(wanted));
 }
 
@@ -133,7 +133,7 @@ std::string Heat<D>::concern() const {
     std::string text = vapour_ ? vapour_->concern() : "";
     if (frozen_ > 0 && !free_)
         text += (text.empty() ? "" : "; ") + std::to_string(frozen_) +
-                " particles are frozen: they are held where they are, ice neither floats nor sinks";
+                " particles are frozen: heat.frozen = \"held\" fixes their positions, so ice neither floats nor sinks";
     return text;
 }
 

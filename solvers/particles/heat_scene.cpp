@@ -36,8 +36,9 @@ void check_density(const scene::Scene& scene, const thermo::Substance& substance
     const real solid = melts ? substance.colder_density(thermo::Boundary::melting, states.T) : liquid;
     if (rho >= 0.9 * std::min(liquid, solid) && rho <= 1.1 * std::max(liquid, solid)) return;
     const auto text = [](real value) { return scene::number_text(std::round(value * 10) / 10); };
-    scene.refuse("fluid.density", "fluid.density is " + scene::number_text(rho) + " kg/m^3, which is no density of " + substance.name(),
-                 "solid " + text(solid) + ", liquid " + text(liquid) + " kg/m^3: this solver takes one for both");
+    scene.refuse("fluid.density",
+                 "fluid.density is " + scene::number_text(rho) + " kg/m^3, which does not match the density of " + substance.name(),
+                 "solid " + text(solid) + ", liquid " + text(liquid) + " kg/m^3: this solver uses one density for solid and liquid");
 }
 
 /// At the lowest pressure that the scene tells of: where there is more it boils at a higher enthalpy (Vapour).
@@ -48,7 +49,7 @@ thermo::HeatCurve liquid_curve(const scene::Scene& scene, const thermo::Substanc
     if (!has_liquid(curve))
         scene.refuse(substance.has(thermo::Boundary::saturation) ? path : "substance",
                      "at " + scene::number_text(ambient.lowest_pressure()) + " Pa " + substance.name() + " is never a liquid",
-                     "particles are those of a liquid");
+                     "particles represent a liquid");
     return curve;
 }
 
@@ -77,9 +78,9 @@ Key frozen_key() {
     return {.name = "frozen",
             .type = Type::text,
             .doc =
-                "What becomes of particles that are more than half frozen. held: each stays where it is, and takes a liquid's room. free: "
-                "those that are neighbours are one rigid piece, which floats or sinks; it takes the room of the solid, and what has "
-                "frozen to a wall that is colder than it melts stays there.",
+                "Treatment of particles that are more than half frozen. held: each keeps its position and the volume of liquid. free: "
+                "neighbouring particles form one rigid piece, which floats or sinks with the volume of the solid; particles frozen to a "
+                "wall below the melting point stay there.",
             .fallback = std::string("held"),
             .choices = {"held", "free"}};
 }
@@ -93,24 +94,22 @@ std::vector<Key> heat_keys() {
     for (const char* axis : {"x", "y", "z"})
         for (const char* end : {"_min", "_max"})
             sides.keys.push_back({.name = std::string(axis) + end, .type = Type::table, .variants = {matter::wall_with_exchange()}});
-    return {
-        matter::substance_key_of_heat("Naming it lets particles carry heat, melt and freeze; `fluid.density` is the liquid's, and the "
-                                      "solid's too where `heat.frozen` does not say otherwise."),
-        {.name = "heat",
-         .type = Type::table,
-         .doc = "How a substance takes up heat. Only where `substance` is named.",
-         .keys = {matter::pressure_key(), matter::ambient_key_of_particles(), frozen_key(), vapour_key()}},
-        matter::heaters_key(
-            "Regions that give off heat, evenly over the particles inside; while there is none, nothing. Only where `substance` is named."),
-        sides};
+    return {matter::substance_key_of_heat("Naming it lets particles carry heat, melt and freeze; `fluid.density` is that of the liquid, "
+                                          "and of the solid unless `heat.frozen` is \"free\"."),
+            {.name = "heat",
+             .type = Type::table,
+             .doc = "Heat transfer of a substance. Requires `substance`.",
+             .keys = {matter::pressure_key(), matter::ambient_key_of_particles(), frozen_key(), vapour_key()}},
+            matter::heaters_key("Heat sources, distributed uniformly over the particles inside; without particles inside they add nothing. "
+                                "Requires `substance`."),
+            sides};
 }
 
 Key initial_temperature_key() {
     const auto number = [](const char* name, const char* doc, const char* unit) {
         return Key{.name = name, .type = Type::number, .doc = doc, .unit = unit, .required = true};
     };
-    Key key{
-        .name = "temperature", .type = Type::table, .doc = "Temperature at t = 0. Only where `substance` is named.", .selector = "name"};
+    Key key{.name = "temperature", .type = Type::table, .doc = "Temperature at t = 0. Requires `substance`.", .selector = "name"};
     key.variants = {{"ball",
                      "One value in a ball, another outside.",
                      {{.name = "centre", .type = Type::numbers, .doc = "Centre.", .unit = "m", .required = true, .length = -1},
@@ -124,13 +123,13 @@ Key initial_temperature_key() {
 real emitted_enthalpy(const scene::Scene& scene, std::size_t i) {
     const std::string path = "emitters[" + std::to_string(i) + "]";
     const auto& table = scene.root().tables("emitters")[i];
-    if (!table.has("temperature")) scene.refuse(path, "an emitter of particles that carry heat needs a temperature");
+    if (!table.has("temperature")) scene.refuse(path, "an emitter of particles with heat requires a temperature");
     const real T = table.number("temperature");
     matter::check_temperature(scene, path + ".temperature", T);
     const auto curve = liquid_curve(scene, *matter::substance_of(scene));
     const real h = curve.enthalpy(T);
     if (h > heat_states(curve, {}).liquid_end)
-        scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils", "an emitter lets in a liquid");
+        scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils", "an emitter adds liquid");
     return h;
 }
 
@@ -157,7 +156,8 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
     }
     const auto& frames = scene.root().tables("heat.ambient.keyframes");
     if (!vapour_ && std::any_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.has("pressure"); }))
-        scene.refuse("heat.ambient.keyframes", "the surroundings' pressure is where the liquid boils, and here none does", "heat.vapour");
+        scene.refuse("heat.ambient.keyframes", "the pressure of the surroundings sets the boiling point, and this liquid does not boil",
+                     "heat.vapour");
     Scheme scheme;
     scheme.read(scene);
     set_pairs(scheme);
@@ -174,13 +174,13 @@ void Heat<D>::set_ice(const scene::Scene& scene, const Domain<D>& domain, const 
         scene.refuse("heat.frozen", std::string(substance.name()) + " never freezes",
                      "substance.fusion and a triple point make one that does");
     if (vapour_is_named(scene))
-        scene.refuse("heat.frozen", "ice that moves and vapour are not simulated together", "heat.frozen = \"held\", or no heat.vapour");
+        scene.refuse("heat.frozen", "moving ice cannot be combined with vapour", "heat.frozen = \"held\", or no heat.vapour");
     if (!scene.root().tables("bodies").empty())
-        scene.refuse("heat.frozen", "pieces of ice do not meet bodies that move, and this scene has both", "heat.frozen = \"held\"");
+        scene.refuse("heat.frozen", "free ice cannot be combined with moving bodies", "heat.frozen = \"held\"");
     for (int a = 0; a < D; ++a)
         if (domain.sides.periodic(a))
             scene.refuse("heat.frozen",
-                         "pieces of ice do not cross periodic sides, and this scene has them along " + std::string(1, "xyz"[a]),
+                         "free ice cannot cross periodic sides, and this scene is periodic along " + std::string(1, "xyz"[a]),
                          "heat.frozen = \"held\"");
     const real liquid = substance.warmer_density(thermo::Boundary::melting, states_.T),
                solid = substance.colder_density(thermo::Boundary::melting, states_.T);
@@ -188,7 +188,7 @@ void Heat<D>::set_ice(const scene::Scene& scene, const Domain<D>& domain, const 
         scene.refuse(
             "fluid.density",
             "fluid.density is " + scene::number_text(rho0_) + " kg/m^3, nearer the solid's than the liquid's, and heat.frozen is \"free\"",
-            "liquid " + scene::number_text(std::round(liquid * 10) / 10) + " kg/m^3: ice that moves has a density of its own");
+            "liquid " + scene::number_text(std::round(liquid * 10) / 10) + " kg/m^3: free ice has its own density");
     states_.swells = liquid / solid - 1;
     states_.k_c[0] *= (liquid / solid) * (liquid / solid);
 }
@@ -236,8 +236,8 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
             const auto T = scene.has(path + ".temperature") ? std::optional<real>(scene.number(path + ".temperature")) : std::nullopt;
             if (!domain.walled(a, end)) {
                 if (T)
-                    scene.refuse(path + ".temperature", "nothing comes in through a side of particles",
-                                 "walls have a temperature; emitters let in");
+                    scene.refuse(path + ".temperature", "fluid cannot enter through a side of particles",
+                                 "use emitters for inflow, or a temperature of a wall");
                 continue;
             }
             const auto place = [&](auto& w) {
@@ -250,14 +250,13 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
                 matter::check_temperature(scene, path + ".temperature", *T);
                 if (!vapour_ && boils_at_start(*T))
                     scene.refuse(path + ".temperature", "at " + scene::number_text(*T) + " K the liquid boils",
-                                 "the scene names no heat.vapour");
+                                 "add heat.vapour to let it boil");
                 held_ = true;
                 freezing_[static_cast<std::size_t>(2 * a + end)] = *T < states_.T;
             }
             place(single_walls_), place(plain_walls_);
             for (const char* key : {".heat_flux", ".exchange"})
-                if (T && scene.has(path + key))
-                    scene.refuse(path + key, "the wall has a temperature: how much heat passes follows from it");
+                if (T && scene.has(path + key)) scene.refuse(path + key, "the wall has a temperature, which determines the heat flux");
             if (scene.has(path + ".heat_flux")) fluxes_.push_back({a, end, scene.number(path + ".heat_flux")});
             if (scene.has(path + ".exchange")) read_exchange(scene, a, end, path);
         }
@@ -267,8 +266,8 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
 template <int D>
 void Heat<D>::read_exchange(const scene::Scene& scene, int axis, int end, const std::string& path) {
     if (!ambient_.has_temperature())
-        scene.refuse(path + ".exchange", "the wall exchanges heat with surroundings of which nothing is said",
-                     "heat.ambient with a temperature or keyframes");
+        scene.refuse(path + ".exchange", "the wall exchanges heat with surroundings that are not defined",
+                     "add heat.ambient with a temperature or keyframes");
     exchanges_.push_back({axis, end, scene.number(path + ".exchange")});
 }
 
@@ -304,7 +303,7 @@ void Heat<D>::read_heaters(const scene::Scene& scene, const Domain<D>& domain) {
             free = free || domain.solids.empty() || domain.solids.distance(x) > 0;
         }
         if (!free)
-            scene.refuse(path, covers ? "the heater lies inside solids: no heat leaves it" : "the heater covers the centre of no cell");
+            scene.refuse(path, covers ? "the heater lies inside solids: it heats no fluid" : "the heater covers the centre of no cell");
         heaters_.push_back(std::move(heater));
     }
 }
@@ -312,7 +311,7 @@ void Heat<D>::read_heaters(const scene::Scene& scene, const Domain<D>& domain) {
 template <int D>
 void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
     if (!scene.has("initial.temperature.name"))
-        scene.refuse("substance", "a substance needs a temperature at the start", "initial.temperature");
+        scene.refuse("substance", "a substance requires an initial temperature", "initial.temperature");
     const auto value = temperature_function<D>(scene);
     fluid.warm = true;
     fluid.enthalpy.clear();
@@ -325,8 +324,8 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
         if (free_) fluid.density[static_cast<std::size_t>(i)] = rho0_ * rest(fluid.enthalpy.back());
     }
     if (!(coldest > 0))
-        scene.refuse("initial.temperature", "somewhere it is " + scene::number_text(coldest) + " K at the start",
-                     "temperatures are above 0 K");
+        scene.refuse("initial.temperature", "the lowest temperature is " + scene::number_text(coldest) + " K at the start",
+                     "it must be greater than 0 K");
     if (boils_at_start(hottest))
         scene.refuse("initial.temperature", "at " + scene::number_text(hottest) + " K the liquid boils", "particles start as a liquid");
 }

@@ -28,9 +28,9 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
 
 void refuse_over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
-    if (heat_is_named(scene)) scene::one_process_only(scene, "substance", "a substance is heated");
+    if (heat_is_named(scene)) scene::one_process_only(scene, "substance", "heating of a substance is");
     scene::refuse_hand(scene);
-    if (backend_of(scene).kind != backend::Choice::Kind::threads) scene::one_process_only(scene, "scheme.backend", "this backend runs");
+    if (backend_of(scene).kind != backend::Choice::Kind::threads) scene::one_process_only(scene, "scheme.backend", "this backend is");
 }
 
 scene::PlainStep plain_step(std::vector<std::string> more_fields, std::vector<std::string> passes) {

@@ -17,21 +17,20 @@ constexpr std::array smoothing_names{"muller", "cubic", "wendland"};  // in the 
 Key support_key(real usual) {
     return {.name = "support",
             .type = Type::number,
-            .doc = "Support of the kernels over the particles' spacing.",
+            .doc = "Support of the kernels in particle spacings.",
             .fallback = usual,
             .min = 1.2,
             .max = 4.0};
 }
 
 Key backend_key() {
-    return {
-        .name = "backend",
-        .type = Type::text,
-        .doc =
-            "threads: the processor, with the best of its instruction sets, or one by name: threads:sse2, threads:avx2, threads:avx512. "
-            "opencl: the first OpenCL device, or one by number: opencl:1 (weir list devices). reference: plain double precision over all "
-            "pairs on one thread, what the others are compared with; for at most a few thousand particles.",
-        .fallback = std::string("threads")};
+    return {.name = "backend",
+            .type = Type::text,
+            .doc =
+                "threads: the processor, with the best of its instruction sets, or one by name: threads:sse2, threads:avx2, "
+                "threads:avx512. opencl: the first OpenCL device, or one by number: opencl:1 (weir list devices). reference: plain double "
+                "precision over all pairs on one thread, the reference for the other backends; for at most a few thousand particles.",
+            .fallback = std::string("threads")};
 }
 
 }  // namespace
@@ -75,8 +74,8 @@ void check_periods(const std::string& backend, const scene::Scene& scene, std::v
     for (int a = 0; a < D; ++a)
         if (domain.sides.periodic(a) && domain.hi[a] - domain.lo[a] < shortest)
             problems.push_back(scene.problem(
-                "grid.size", "the backend " + backend + " has no periods shorter than two supports",
-                "from scheme.support and the cells' size: " + std::to_string(shortest) + " m; or take scheme.backend = \"threads\""));
+                "grid.size", "the backend " + backend + " does not support periods shorter than two supports",
+                "from scheme.support and the cells' size: " + std::to_string(shortest) + " m; or set scheme.backend = \"threads\""));
 }
 
 }  // namespace
@@ -89,11 +88,11 @@ void refuse_what_lacks(const std::string& backend, const scene::Scene& scene, co
         for (const auto& name : scene.root().table("effects").keys())
             if (scene.effect(name) && std::find(effects.begin(), effects.end(), name) == effects.end())
                 problems.push_back(scene.problem("effects." + name, "the backend " + backend + " has no effect \"" + name + "\"",
-                                                 "it has " + known + "; or take scheme.backend = \"threads\""));
+                                                 "it has " + known + "; or set scheme.backend = \"threads\""));
     for (std::size_t i = 0; backend == "opencl" && scene.has("bodies") && i < scene.root().tables("bodies").size(); ++i)
         if (scene.root().tables("bodies")[i].text("shape") == "mesh")
             problems.push_back(scene.problem("bodies[" + std::to_string(i) + "].shape", "the backend " + backend + " has no shape \"mesh\"",
-                                             "take scheme.backend = \"threads\""));
+                                             "set scheme.backend = \"threads\""));
     if (scene.dim() == 2)
         check_periods<2>(backend, scene, problems);
     else

@@ -143,7 +143,7 @@ template <int D>
 void refuse_outside(const Fluid<D>& fluid, int first) {
     for (int i = first; i < fluid.count(); ++i)
         if (fluid.domain.outside(fluid.position(i)))
-            throw BadInput("particle " + std::to_string(i - first) + " would stand beyond a wall or inside a solid");
+            throw BadInput("particle " + std::to_string(i - first) + " would lie beyond a wall or inside a solid");
 }
 
 }  // namespace

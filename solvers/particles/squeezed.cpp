@@ -17,10 +17,10 @@ void require_room(const Fluid<D>& fluid, real mean_compression) {
         const Vec<D> middle = pose.to_world(solids[i].shape->centre());
         std::string at;
         for (int a = 0; a < D; ++a) at += fmt::format("{}{:.4g}", a ? ", " : "", middle[a]);
-        throw NumericalFailure("volume",
-                               fmt::format("liquid is compressed by {:.3g} on the mean, by more than {}: solids[{}], now at [{}] m, "
-                                           "leaves it no room",
-                                           mean_compression, most, solids.in_list(i), at));
+        throw NumericalFailure(
+            "volume",
+            fmt::format("the mean compression of liquid is {:.3g}, more than {}: solids[{}], now at [{}] m, leaves too little volume",
+                        mean_compression, most, solids.in_list(i), at));
     }
 }
 

@@ -30,17 +30,17 @@ Key vapour_key() {
     Key key{.name = "vapour",
             .type = Type::table,
             .doc =
-                "Naming it lets the liquid boil and the vapour condense; without it a run in which the liquid boils ends there. A support "
-                "reaches no vapour of a sixteen hundredth of its liquid's density, as water's: `run.json` and `--explain` say how far "
-                "from the physical one a density is.",
+                "Naming it lets the liquid boil and the vapour condense; without it a run stops where the liquid boils. A vapour as thin "
+                "as water's (1/1600 of the liquid's density) is below the resolution of the kernel support: `run.json` and `--explain` "
+                "report the ratio to the physical density.",
             .selector = "name",
             .example = "heat.vapour = \"substance\""};
-    key.variants = {{"substance", "As dense as the substance's where it boils.", {}},
+    key.variants = {{"substance", "Density of the substance's vapour at its boiling point.", {}},
                     {"own",
-                     "As dense as this.",
+                     "Given density.",
                      {{.name = "density",
                        .type = Type::number,
-                       .doc = "To which it expands.",
+                       .doc = "Density of the vapour.",
                        .unit = "kg/m^3",
                        .required = true,
                        .min = 0,
@@ -60,12 +60,12 @@ Vapour<D>::Vapour(const scene::Scene& scene, const Domain<D>& domain, thermo::Su
     const real physical = substance_->warmer_density(thermo::Boundary::saturation, boils);
     const real density = scene.text("heat.vapour.name") == "own" ? scene.number("heat.vapour.density") : physical;
     if (!(density < rho0))
-        scene.refuse("heat.vapour.density", "the vapour's " + scene::number_text(density) + " kg/m^3 are not less than the liquid's",
+        scene.refuse("heat.vapour.density", "the vapour's " + scene::number_text(density) + " kg/m^3 must be less than the liquid's",
                      "fluid.density = " + scene::number_text(rho0));
     if (std::abs(density / physical - 1) > 0.01)
         concern_ = fmt::format(
             "the vapour's density is not the physical one: {:.4g} kg/m^3, {:.3g} times {}'s {:.4g} kg/m^3 where it boils at {:.6g} Pa; "
-            "mass, latent heat and temperatures are not changed by that",
+            "mass, latent heat and temperatures are not affected",
             density, density / physical, substance_->name(), physical, p);
     params_.expansion = rho0 / density;
     set_columns(scene, domain);

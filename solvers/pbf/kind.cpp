@@ -17,11 +17,11 @@ Key scheme() {
     return particles::scheme_key(
         "Numerical choices of PBF.",
         "cubic and wendland: one kernel for the density and its gradient. muller: poly6 for density, spiky for its gradient, as published; "
-        "a force that is no gradient, so it feeds energy.",
+        "a force that is not a gradient, so it adds energy.",
         usual,
         {{.name = "iterations",
           .type = Type::integer,
-          .doc = "Iterations a step, where no tolerance is given.",
+          .doc = "Iterations per step, if no tolerance is given.",
           .fallback = std::int64_t{usual.iterations},
           .min = 1,
           .steerable = true},
@@ -33,7 +33,7 @@ Key scheme() {
           .steerable = true},
          {.name = "max_iterations",
           .type = Type::integer,
-          .doc = "With a tolerance: no more iterations than this.",
+          .doc = "With a tolerance: maximum number of iterations.",
           .fallback = std::int64_t{usual.max_iterations},
           .min = 1,
           .steerable = true},
@@ -45,7 +45,7 @@ Key scheme() {
           .steerable = true},
          {.name = "relaxation",
           .type = Type::number,
-          .doc = "Factor of every correction.",
+          .doc = "Relaxation factor of every correction.",
           .fallback = usual.relaxation,
           .min = 0,
           .max = 2.0,
@@ -53,37 +53,33 @@ Key scheme() {
           .steerable = true},
          {.name = "warm_start",
           .type = Type::number,
-          .doc = "Keep the constraints' multipliers and start the next step's iterations from this part of them, which divides what is "
-                 "left of compression by 1 - warm_start. From 0.5 on a liquid at rest trembles.",
+          .doc = "Warm start: the next step's iterations start from this fraction of the constraints' multipliers, which multiplies the "
+                 "remaining compression by 1 - warm_start. From 0.5 on a liquid at rest oscillates.",
           .fallback = usual.warm_start,
           .min = 0,
           .max = 1.0,
           .steerable = true},
          {.name = "settle",
           .type = Type::integer,
-          .doc = "At most so many iterations before the first step take the density error of the initial lattice out of the positions, "
-                 "so that it does not become speed.",
+          .doc = "Maximum number of iterations before the first step that remove the density error of the initial lattice from the "
+                 "positions, so that it does not turn into velocity.",
           .fallback = std::int64_t{usual.settle},
           .min = 0}});
 }
 
 std::vector<scene::Variant> effects() {
     const Options usual;
-    return {{"artificial_pressure",
-             "Pushes close particles apart (Macklin & Müller 2013, eq. 13 with n = 4).",
-             {{.name = "k",
-               .type = Type::number,
-               .doc = "Its strength over the support squared.",
-               .fallback = 1e-4,
-               .min = 0,
-               .steerable = true},
-              {.name = "dq",
-               .type = Type::number,
-               .doc = "Distance, over the support, at which it has this strength.",
-               .fallback = usual.pressure_dq,
-               .min = 0,
-               .max = 0.9}},
-             {"k"}}};
+    return {
+        {"artificial_pressure",
+         "Artificial pressure against clustering (Macklin & Müller 2013, eq. 13 with n = 4).",
+         {{.name = "k", .type = Type::number, .doc = "Strength over the support squared.", .fallback = 1e-4, .min = 0, .steerable = true},
+          {.name = "dq",
+           .type = Type::number,
+           .doc = "Distance, over the support, at which it has this strength.",
+           .fallback = usual.pressure_dq,
+           .min = 0,
+           .max = 0.9}},
+         {"k"}}};
 }
 
 /// Of a step over ranks: those near the cuts, and the multipliers and positions that neighbours read in each iteration.

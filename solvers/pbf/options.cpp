@@ -55,8 +55,8 @@ void Options::check_vapour(const scene::Scene& scene) const {
     if (own && scene.number("heat.vapour.density") >= least) return;
     scene.refuse(
         own ? "heat.vapour.density" : "heat.vapour",
-        own ? "particles of a vapour of " + scene::number_text(scene.number("heat.vapour.density")) + " kg/m^3 hardly reach each other"
-            : "PBF's particles must reach each other in the vapour too: it needs a density that the scene says",
+        own ? "particles of a vapour of " + scene::number_text(scene.number("heat.vapour.density")) + " kg/m^3 have too few neighbours"
+            : "PBF requires neighbours in the vapour too: give heat.vapour a density",
         "heat.vapour.density from " + scene::number_text(std::ceil(least)) +
             " kg/m^3 on, with scheme.support = " + scene::number_text(support));
 }
@@ -64,7 +64,8 @@ void Options::check_vapour(const scene::Scene& scene) const {
 template <int D>
 particles::Fluid<D> first_fluid(const scene::Scene& scene) {
     auto fluid = particles::initial_fluid<D>(scene);
-    particles::refuse_idle_walls(scene, fluid.domain, false, "PBF has none: take slip = \"free\", or solver = \"sph\" with its viscosity");
+    particles::refuse_idle_walls(scene, fluid.domain, false,
+                                 "PBF has no viscosity: set slip = \"free\", or use solver = \"sph\" with its viscosity");
     return fluid;
 }
 

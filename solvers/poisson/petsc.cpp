@@ -68,7 +68,7 @@ template <int D>
 Made<D> make(const char* preconditioner, const Options& options) {
     if (other_mpi())
         throw BadInput(std::string("the pressure method petsc_") + preconditioner +
-                       ": the ranks were started by another MPI than the one that PETSc was built with");
+                       ": the ranks were started by an MPI other than the one that PETSc was built with");
     if (!entry())
         throw BadInput(std::string("the pressure method petsc_") + preconditioner +
                        " needs PETSc, and this weir was built without it: install libpetsc-real-dev and configure again");

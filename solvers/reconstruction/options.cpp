@@ -11,7 +11,7 @@ Method method_named(std::string_view name) {
     if (name == "zhu_bridson") return Method::zhu_bridson;
     if (name == "anisotropic") return Method::anisotropic;
     if (name == "density") return Method::density;
-    throw std::logic_error("no surface is made by \"" + std::string(name) + "\"");
+    throw std::logic_error("unknown surface method \"" + std::string(name) + "\"");
 }
 
 real read_beside(const Options& options) {

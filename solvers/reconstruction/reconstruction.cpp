@@ -106,7 +106,7 @@ const SurfaceMesh& Reconstruction::make_from(const FieldSet& fields, real t) {
 
 void Reconstruction::from_level_set(const FieldSet& fields) {
     const FieldView* phi = fields.find(level_set_name);
-    if (!phi) throw BadInput("there is no level set to take the surface of");
+    if (!phi) throw BadInput("there is no level set to reconstruct the surface from");
     const GridView& grid = fields.grid;
     {
         const auto timed = passes_.time("field");
@@ -133,7 +133,7 @@ void Reconstruction::from_level_set(const FieldSet& fields) {
 
 void Reconstruction::from_particles(const FieldSet& fields) {
     const FieldView* position = particles_of(fields);
-    if (!position) throw BadInput("there are no particles to make a surface of");
+    if (!position) throw BadInput("there are no particles to reconstruct the surface from");
     const bool markers = position->set == marker_set_name;
     const Components own = in_parts_ ? part_of(fields, *position) : position->data;
     const FieldView* velocity = fields.find(position->set, "velocity");

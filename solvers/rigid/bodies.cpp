@@ -16,61 +16,63 @@ using scene::Key;
 using scene::Type;
 
 Key bodies_key() {
-    return {.name = "bodies",
-            .type = Type::tables,
-            .doc = "Rigid bodies that the fluid carries and that push it back. Each needs a density or a mass.",
-            .keys = {{.name = "name", .type = Type::text, .doc = "What probes call it; its number, from 0, where absent."},
-                     {.name = "density", .type = Type::number, .doc = "Density; 0 is allowed.", .unit = "kg/m^3", .min = 0},
-                     {.name = "mass",
-                      .type = Type::number,
-                      .doc = "Mass in place of a density, spread evenly; per metre of depth in 2D.",
-                      .unit = "kg",
-                      .min = 0},
-                     {.name = "centre_of_mass",
-                      .type = Type::numbers,
-                      .doc = "Where it is not the middle of the shape: the moments of inertia are those of an even shape about this point.",
-                      .unit = "m",
-                      .length = -1},
-                     {.name = "velocity",
-                      .type = Type::numbers,
-                      .doc = "Velocity of the centre of mass at t = 0.",
-                      .unit = "m/s",
-                      .fallback = std::vector<double>{0},
-                      .length = -1},
-                     {.name = "spin",
-                      .type = Type::numbers,
-                      .doc = "Angular velocity at t = 0: one number in 2D, anticlockwise; about x, y and z in 3D.",
-                      .unit = "rad/s"},
-                     {.name = "fixed",
-                      .type = Type::texts,
-                      .doc = "What it may not do: move along an axis, turn about one, or turn at all.",
-                      .fallback = std::vector<std::string>{},
-                      .choices = {"x", "y", "z", "turning", "turning_x", "turning_y", "turning_z"}},
-                     {.name = "slip",
-                      .type = Type::choice,
-                      .doc = "free: fluid glides along it; no: it sticks to it.",
-                      .fallback = std::string("free"),
-                      .choices = {"free", "no"}},
-                     {.name = "friction",
-                      .type = Type::number,
-                      .doc = "Coulomb's coefficient where it touches walls and solids; of two bodies the geometric mean.",
-                      .fallback = 0.0,
-                      .min = 0},
-                     {.name = "restitution",
-                      .type = Type::number,
-                      .doc = "Speed after a collision over speed before it; of two bodies the larger.",
-                      .fallback = 0.0,
-                      .min = 0,
-                      .max = 1}},
-            .selector = "shape",
-            .variants_from = &scene::shapes};
+    return {
+        .name = "bodies",
+        .type = Type::tables,
+        .doc = "Rigid bodies with two-way coupling to the fluid. Each requires a density or a mass.",
+        .keys = {{.name = "name", .type = Type::text, .doc = "Name for probes; if absent, its number from 0."},
+                 {.name = "density", .type = Type::number, .doc = "Density; 0 is allowed.", .unit = "kg/m^3", .min = 0},
+                 {.name = "mass",
+                  .type = Type::number,
+                  .doc = "Mass instead of a density, distributed uniformly; per metre of depth in 2D.",
+                  .unit = "kg",
+                  .min = 0},
+                 {.name = "centre_of_mass",
+                  .type = Type::numbers,
+                  .doc = "Centre of mass, if it is not the centroid of the shape: the moments of inertia are those of a uniform shape "
+                         "about this point.",
+                  .unit = "m",
+                  .length = -1},
+                 {.name = "velocity",
+                  .type = Type::numbers,
+                  .doc = "Velocity of the centre of mass at t = 0.",
+                  .unit = "m/s",
+                  .fallback = std::vector<double>{0},
+                  .length = -1},
+                 {.name = "spin",
+                  .type = Type::numbers,
+                  .doc = "Angular velocity at t = 0: one number in 2D, anticlockwise; about x, y and z in 3D.",
+                  .unit = "rad/s"},
+                 {.name = "fixed",
+                  .type = Type::texts,
+                  .doc = "Fixed degrees of freedom: translation along an axis, rotation about one, or all rotation.",
+                  .fallback = std::vector<std::string>{},
+                  .choices = {"x", "y", "z", "turning", "turning_x", "turning_y", "turning_z"}},
+                 {.name = "slip",
+                  .type = Type::choice,
+                  .doc = "Boundary condition of the tangential velocity: free slip or no slip.",
+                  .fallback = std::string("free"),
+                  .choices = {"free", "no"}},
+                 {.name = "friction",
+                  .type = Type::number,
+                  .doc = "Coulomb's coefficient of friction in contact with walls and solids; the geometric mean in contact of two bodies.",
+                  .fallback = 0.0,
+                  .min = 0},
+                 {.name = "restitution",
+                  .type = Type::number,
+                  .doc = "Coefficient of restitution; the larger one in contact of two bodies.",
+                  .fallback = 0.0,
+                  .min = 0,
+                  .max = 1}},
+        .selector = "shape",
+        .variants_from = &scene::shapes};
 }
 
 Key probe_key() {
     Key probes{.name = "probes", .type = Type::tables};
     probes.variants = {
         {"body",
-         "Where a body is and how it moves, and the force and torque of the fluid on it.",
+         "Position and motion of a body, and the force and torque of the fluid on it.",
          {{.name = "body", .type = Type::text, .doc = "Its name, or its number from 0.", .required = true, .example = "body = \"0\""}}}};
     return probes;
 }
@@ -118,10 +120,9 @@ std::array<bool, freedoms<D>> held_by(const scene::Scene& scene, const scene::Ta
 
 real mass_by(const scene::Scene& scene, const scene::Table& table, const std::string& path, real volume) {
     if (table.has("mass") == table.has("density"))
-        scene.refuse(
-            path,
-            path + (table.has("mass") ? " has a mass and a density, and one follows from the other" : " has neither density nor mass"),
-            "density = 500.0, or mass = 2.0");
+        scene.refuse(path,
+                     path + (table.has("mass") ? " has both a mass and a density: give one of them" : " has neither density nor mass"),
+                     "density = 500.0, or mass = 2.0");
     return table.has("mass") ? table.number("mass") : table.number("density") * volume;
 }
 
@@ -143,7 +144,8 @@ Bodies<D>::Bodies(const scene::Scene& scene) {
     for (std::size_t i = 0; i < scene.root().tables("bodies").size(); ++i) {
         for (int a = 0; a < D; ++a)
             if (sides.periodic(a))
-                scene.refuse(path_of(i), "bodies do not cross periodic sides, and this scene has them along " + std::string(1, "xyz"[a]));
+                scene.refuse(path_of(i),
+                             "bodies cannot cross periodic sides, and this scene is periodic along " + std::string(1, "xyz"[a]));
         read(scene, i);
     }
     joints_ = Joints<D>(scene, list_);
@@ -156,13 +158,13 @@ void Bodies<D>::read(const scene::Scene& scene, std::size_t number) {
     const std::string path = path_of(number);
     const Bounds<D> box = bounds_of<D>(table);
     if (!box.finite())
-        scene.refuse(path + ".shape", path + " is a " + table.text("shape") + ", which has no end", "a body has a finite volume");
+        scene.refuse(path + ".shape", path + " is a " + table.text("shape") + ", which is unbounded", "a body has a finite volume");
     Body<D> body;
     body.moments = moments_of<D>(table);
-    if (!(body.moments.volume > 0)) scene.refuse(path + ".shape", path + " has no volume: nothing of it is left");
+    if (!(body.moments.volume > 0)) scene.refuse(path + ".shape", path + " has no volume: its shape is empty");
     for (int a = 0; a < D; ++a)
         if (body.moments.centre[a] < around_.min[a] || body.moments.centre[a] > around_.max[a])
-            scene.refuse(path + ".shape", path + " lies outside the domain: its middle is at " +
+            scene.refuse(path + ".shape", path + " lies outside the domain: its centre is at " +
                                               scene::number_text(body.moments.centre[a]) + " m along " + "xyz"[a]);
     body.name = table.text_or("name", std::to_string(number));
     for (const Body<D>& other : list_)

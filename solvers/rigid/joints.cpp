@@ -13,17 +13,18 @@ using scene::Type;
 Key joints_key() {
     const Key body{.name = "body",
                    .type = Type::text,
-                   .doc = "The body that it holds: its name, or its number from 0.",
+                   .doc = "First body of the joint: its name, or its number from 0.",
                    .required = true,
                    .example = "body = \"0\""};
-    const Key to{.name = "to", .type = Type::text, .doc = "The body that it is held by, by name or number; the world where absent."};
+    const Key to{.name = "to", .type = Type::text, .doc = "Second body of the joint, by name or number; the world if absent."};
     const auto point = [](const char* name, const char* doc) {
         return Key{.name = name, .type = Type::numbers, .doc = doc, .unit = "m", .required = true, .length = -1};
     };
-    Key joints{.name = "joints", .type = Type::tables, .doc = "What ties bodies to each other and to the world.", .selector = "kind"};
+    Key joints{
+        .name = "joints", .type = Type::tables, .doc = "Joints between bodies, or between a body and the world.", .selector = "kind"};
     joints.variants = {
         {"hinge",
-         "The body turns about a point, in 3D about an axis through it.",
+         "Hinge: the body rotates about a point, in 3D about an axis through it.",
          {body,
           to,
           point("at", "The point, at t = 0."),
@@ -34,7 +35,7 @@ Key joints_key() {
            .length = 3,
            .only_dim = 3}}},
         {"slider",
-         "The body moves along a line and does not turn.",
+         "Slider: the body moves along a line without rotation.",
          {body,
           to,
           point("at", "A point of the body that stays on the line, at t = 0."),
@@ -44,26 +45,26 @@ Key joints_key() {
            .required = true,
            .length = -1}}},
         {"mooring",
-         "A line that pulls where it is longer than its length, as a spring and a damper, and never pushes.",
+         "Mooring line: a spring and a damper that act only where the line is longer than its rest length.",
          {body,
           to,
-          point("at", "Where it is tied to the body, at t = 0."),
-          point("anchor", "Where its other end is tied, at t = 0."),
+          point("at", "Attachment point on the body, at t = 0."),
+          point("anchor", "Attachment point of its other end, at t = 0."),
           {.name = "length",
            .type = Type::number,
-           .doc = "Its length without tension; the distance of its ends at t = 0 where absent.",
+           .doc = "Rest length; if absent, the distance of its ends at t = 0.",
            .unit = "m",
            .min = 0},
           {.name = "stiffness",
            .type = Type::number,
-           .doc = "Tension by stretch; per metre of depth in 2D.",
+           .doc = "Stiffness: tension per elongation; per metre of depth in 2D.",
            .unit = "N/m",
            .required = true,
            .min = 0,
            .min_open = true},
           {.name = "damping",
            .type = Type::number,
-           .doc = "Tension by the speed at which it is stretched; per metre of depth in 2D.",
+           .doc = "Damping: tension per rate of elongation; per metre of depth in 2D.",
            .unit = "N s/m",
            .fallback = 0.0,
            .min = 0}}},
@@ -128,13 +129,13 @@ void Joints<D>::read(const scene::Scene& scene, std::size_t number, const std::v
     joint.kind = kind == "hinge" ? JointKind::hinge : kind == "slider" ? JointKind::slider : JointKind::mooring;
     joint.body = named(scene, path + ".body", table.text("body"), bodies);
     if (table.has("to")) joint.other = static_cast<std::ptrdiff_t>(named(scene, path + ".to", table.text("to"), bodies));
-    if (joint.other == static_cast<std::ptrdiff_t>(joint.body)) scene.refuse(path + ".to", path + " ties a body to itself");
+    if (joint.other == static_cast<std::ptrdiff_t>(joint.body)) scene.refuse(path + ".to", path + " connects a body to itself");
     for (const std::ptrdiff_t b : {static_cast<std::ptrdiff_t>(joint.body), joint.other})
         if (b >= 0 && !(bodies[static_cast<std::size_t>(b)].mass > 0))
             scene.refuse(path + (b == joint.other ? ".to" : ".body"),
                          path + " holds the body " + scene::quote(bodies[static_cast<std::size_t>(b)].name) +
-                             ", which has no mass: out of the water any pull would move it without end",
-                         "a mass, however small");
+                             ", which has no mass: outside the water its acceleration would be unbounded",
+                         "give the body a mass greater than 0");
     joint.at = joint.anchor = table.vec<D>("at");
     if (joint.kind == JointKind::mooring) {
         joint.anchor = table.vec<D>("anchor");
@@ -142,7 +143,7 @@ void Joints<D>::read(const scene::Scene& scene, std::size_t number, const std::v
         joint.stiffness = table.number("stiffness"), joint.damping = table.number("damping");
     } else if (D == 3 || joint.kind == JointKind::slider) {
         joint.axis = table.vec<D>("axis");
-        if (norm(joint.axis) == 0) scene.refuse(path + ".axis", path + ".axis is zero; it must point somewhere");
+        if (norm(joint.axis) == 0) scene.refuse(path + ".axis", path + ".axis is the zero vector; it must have a direction");
         joint.axis = joint.axis / norm(joint.axis);
     }
     list_.push_back(joint);

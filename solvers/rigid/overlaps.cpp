@@ -14,7 +14,7 @@ namespace {
 /// Relative to a body's radius: the depth at which contacts leave bodies at rest (contacts.cpp).
 constexpr real touching = 1e-3;
 
-constexpr const char* advice = "bodies begin clear of walls, solids and each other, or touch them";
+constexpr const char* advice = "place bodies so that they do not overlap walls, solids or each other";
 
 template <int D>
 std::string label(const scene::Scene& scene, std::size_t b) {
@@ -78,8 +78,8 @@ void refuse_in_walls(const scene::Scene& scene, const std::vector<Body<D>>& bodi
                 depth = std::max(depth, feeler.radius + (end == 0 ? around.min[a] - feeler.at[a] : feeler.at[a] - around.max[a]));
             if (depth > touching * bodies[b].radius)
                 scene.refuse(fmt::format("bodies[{}]", b),
-                             fmt::format("{} begins {:.4g} m through the wall {}_{} at {} = {:.6g} m", label<D>(scene, b), depth, "xyz"[a],
-                                         end == 0 ? "min" : "max", "xyz"[a], end == 0 ? around.min[a] : around.max[a]),
+                             fmt::format("{} overlaps the wall {}_{} at {} = {:.6g} m by {:.4g} m", label<D>(scene, b), "xyz"[a],
+                                         end == 0 ? "min" : "max", "xyz"[a], end == 0 ? around.min[a] : around.max[a], depth),
                              advice);
         }
 }
@@ -107,7 +107,7 @@ void refuse_overlaps(const scene::Scene& scene, const std::vector<Body<D>>& bodi
             solid.shape = solids[s].shape, solid.pose = solids.pose(s);
             if (const real depth = depth_in(bodies[b], box, solid); depth > touching * bodies[b].radius)
                 scene.refuse(fmt::format("bodies[{}]", b),
-                             fmt::format("{} begins {:.4g} m inside solids[{}]", label<D>(scene, b), depth, solids.in_list(s)), advice);
+                             fmt::format("{} overlaps solids[{}] by {:.4g} m", label<D>(scene, b), solids.in_list(s), depth), advice);
         }
         for (std::size_t o = 0; o < b; ++o) {
             if (joints.tie(b, o) || norm(bodies[b].centre - bodies[o].centre) >= bodies[b].radius + bodies[o].radius) continue;
@@ -115,9 +115,7 @@ void refuse_overlaps(const scene::Scene& scene, const std::vector<Body<D>>& bodi
                 std::max(depth_in(bodies[b], box, *bodies[o].shape), depth_in(bodies[o], bounds_of<D>(tables[o]), *bodies[b].shape));
             if (deepest > touching * std::min(bodies[b].radius, bodies[o].radius))
                 scene.refuse(fmt::format("bodies[{}]", b),
-                             fmt::format("{} and {} begin in the same place: {:.4g} m inside each other", label<D>(scene, o),
-                                         label<D>(scene, b), deepest),
-                             advice);
+                             fmt::format("{} and {} overlap by {:.4g} m", label<D>(scene, o), label<D>(scene, b), deepest), advice);
         }
     }
 }

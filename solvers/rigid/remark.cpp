@@ -20,10 +20,10 @@ std::string remark(const scene::Scene& scene) {
     const auto heavy = std::count_if(bodies.all().begin(), bodies.all().end(), sinks);
     if (heavy == 0) return "";
     const Body<D>& first = *std::find_if(bodies.all().begin(), bodies.all().end(), sinks);
-    return "fluid.density is not named, so it is " + scene::number_text(scene.number("fluid.density")) + " kg/m^3, as of air, and body \"" +
-           first.name + "\" of " + scene::number_text(std::round(first.density())) + " kg/m^3 sinks in it" +
-           (heavy > 1 ? ", and " + std::to_string(heavy - 1) + (heavy > 2 ? " others" : " other") : "") +
-           "; of water: fluid = { density = 1000.0 }";
+    return "fluid.density is not given; the default is " + scene::number_text(scene.number("fluid.density")) +
+           " kg/m^3, the density of air, and body \"" + first.name + "\" of " + scene::number_text(std::round(first.density())) +
+           " kg/m^3 sinks in it" + (heavy > 1 ? ", and " + std::to_string(heavy - 1) + (heavy > 2 ? " others" : " other") : "") +
+           "; for water: fluid = { density = 1000.0 }";
 }
 
 }  // namespace

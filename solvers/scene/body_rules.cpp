@@ -27,7 +27,7 @@ void check_box(const Table& box, const std::string& path, const Report& report) 
 
 void check_direction(const Table& table, const char* key, const std::string& path, const Report& report) {
     if (table.has(key) && is_zero(table.numbers(key)))
-        report(table.place(key), fmt::format("{}.{} is zero; it must point somewhere", path, key));
+        report(table.place(key), fmt::format("{}.{} is the zero vector; it must have a direction", path, key));
 }
 
 bool has_all(const Table& t, std::initializer_list<const char*> keys) {
@@ -101,7 +101,7 @@ void check_motion(const Table& motion, const std::string& path, const Report& re
     const auto& frames = motion.tables("frames");
     for (std::size_t i = 1; i < frames.size(); ++i)
         if (has_all(frames[i], {"t"}) && has_all(frames[i - 1], {"t"}) && frames[i].number("t") <= frames[i - 1].number("t"))
-            report(frames[i].place("t"), fmt::format("{}.frames[{}].t is {} s, not after {} s of the frame before", path, i,
+            report(frames[i].place("t"), fmt::format("{}.frames[{}].t is {} s; it must be after {} s of the previous keyframe", path, i,
                                                      number_text(frames[i].number("t")), number_text(frames[i - 1].number("t"))));
 }
 
@@ -112,8 +112,8 @@ void check_probes(const Table& root, const Domain& domain, int dim, const Report
         const Table& probe = probes[i];
         const auto path = fmt::format("probes[{}]", i);
         if (probe.has("name") && !is_file_name(probe.text("name")))
-            report(probe.place("name"), fmt::format("{}.name is {}; it names a file", path, quote(probe.text("name"))),
-                   "letters, digits, '_', '-' and '.', not at its beginning");
+            report(probe.place("name"), fmt::format("{}.name is {}, which is not a valid file name", path, quote(probe.text("name"))),
+                   "letters, digits, '_', '-' and '.', not as the first character");
         else if (probe.has("name"))
             if (const auto [first, inserted] = names.emplace(probe.text("name"), probe.place("name")); !inserted)
                 report(probe.place("name"), fmt::format("two probes have the name {}; each writes its own file", quote(probe.text("name"))),

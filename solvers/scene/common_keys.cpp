@@ -10,15 +10,10 @@ const std::vector<Variant>& field_shapes() {
         {"linear",
          "value + gradient . (x - at)",
          {{.name = "value", .type = Type::number, .doc = "The value at `at`.", .fallback = 0.0},
-          {.name = "gradient",
-           .type = Type::numbers,
-           .doc = "Change a metre along each axis.",
-           .unit = "1/m",
-           .required = true,
-           .length = -1},
+          {.name = "gradient", .type = Type::numbers, .doc = "Gradient along each axis.", .unit = "1/m", .required = true, .length = -1},
           {.name = "at",
            .type = Type::numbers,
-           .doc = "Where it has `value`.",
+           .doc = "Point at which it has `value`.",
            .unit = "m",
            .fallback = std::vector<double>{0},
            .length = -1}}},
@@ -48,44 +43,45 @@ Key initial_field(std::string name, std::string doc, std::string unit) {
 }
 
 Key grid() {
-    return {.name = "grid",
-            .type = Type::table,
-            .doc = "The box of cells in which the fluid is simulated.",
-            .required = true,
-            .keys = {{.name = "cells",
-                      .type = Type::integers,
-                      .doc = "Number of cells along each axis. They need not be cubes, but for particles, whose spacing is their width.",
-                      .required = true,
-                      .min = 1,
-                      .length = -1,
-                      .example = "cells = [64, 64]"},
-                     {.name = "size",
-                      .type = Type::numbers,
-                      .doc = "Extent along each axis.",
-                      .unit = "m",
-                      .required = true,
-                      .min = 0,
-                      .min_open = true,
-                      .length = -1,
-                      .example = "size = [1.0, 1.0]"},
-                     {.name = "origin",
-                      .type = Type::numbers,
-                      .doc = "Lower corner.",
-                      .unit = "m",
-                      .fallback = std::vector<double>{0},
-                      .length = -1},
-                     {.name = "periodic",
-                      .type = Type::texts,
-                      .doc = "Axes along which the domain repeats; the same as kind = \"periodic\" on both sides.",
-                      .fallback = std::vector<std::string>{},
-                      .choices = {"x", "y", "z"}}},
-            .example = "grid = { cells = [64, 64], size = [1.0, 1.0] }"};
+    return {
+        .name = "grid",
+        .type = Type::table,
+        .doc = "The box of cells in which the fluid is simulated.",
+        .required = true,
+        .keys = {{.name = "cells",
+                  .type = Type::integers,
+                  .doc = "Number of cells along each axis. Cells need not be cubes, except for particles, whose spacing is the cell width.",
+                  .required = true,
+                  .min = 1,
+                  .length = -1,
+                  .example = "cells = [64, 64]"},
+                 {.name = "size",
+                  .type = Type::numbers,
+                  .doc = "Extent along each axis.",
+                  .unit = "m",
+                  .required = true,
+                  .min = 0,
+                  .min_open = true,
+                  .length = -1,
+                  .example = "size = [1.0, 1.0]"},
+                 {.name = "origin",
+                  .type = Type::numbers,
+                  .doc = "Lower corner.",
+                  .unit = "m",
+                  .fallback = std::vector<double>{0},
+                  .length = -1},
+                 {.name = "periodic",
+                  .type = Type::texts,
+                  .doc = "Axes along which the domain repeats; the same as kind = \"periodic\" on both sides.",
+                  .fallback = std::vector<std::string>{},
+                  .choices = {"x", "y", "z"}}},
+        .example = "grid = { cells = [64, 64], size = [1.0, 1.0] }"};
 }
 
 Key time() {
     return {.name = "time",
             .type = Type::table,
-            .doc = "How long, and in which steps.",
+            .doc = "End time and time steps.",
             .required = true,
             .keys = {{.name = "end",
                       .type = Type::number,
@@ -98,21 +94,21 @@ Key time() {
                       .steerable = true},
                      {.name = "cfl",
                       .type = Type::number,
-                      .doc = "How many cells the fastest fluid may cross in one step, where `dt` is not given.",
+                      .doc = "CFL number: cells that the fastest fluid may cross in one step, where `dt` is not given.",
                       .fallback = 0.5,
                       .min = 0,
                       .min_open = true,
                       .steerable = true},
                      {.name = "dt",
                       .type = Type::number,
-                      .doc = "A fixed step, in place of one from `cfl`.",
+                      .doc = "A fixed time step, instead of one from `cfl`.",
                       .unit = "s",
                       .min = 0,
                       .min_open = true,
                       .steerable = true},
                      {.name = "max_dt",
                       .type = Type::number,
-                      .doc = "No step is longer.",
+                      .doc = "Upper bound of the time step.",
                       .unit = "s",
                       .min = 0,
                       .min_open = true,
@@ -120,14 +116,14 @@ Key time() {
                      {.name = "stop_when_steady",
                       .type = Type::number,
                       .doc = "End the run after the first step in which no component of the velocity on the grid changed faster than this. "
-                             "A flow that still waits for something to begin is steady too.",
+                             "A flow before a later event (an emitter, a change) also counts as steady.",
                       .unit = "m/s^2",
                       .min = 0,
                       .min_open = true},
                      {.name = "guard",
                       .type = Type::choice,
-                      .doc = "What happens to a step, from `dt` or `cfl`, that is longer than the solver is stable for. substep: it is "
-                             "taken in equal parts, and said so once; off: it is taken, for studies of where a method breaks.",
+                      .doc = "Treatment of a step, from `dt` or `cfl`, that exceeds the stability limit of the solver. substep: it is "
+                             "divided into equal substeps, with one warning; off: it is taken, for studies of stability limits.",
                       .fallback = std::string("substep"),
                       .choices = {"substep", "off"}}},
             .example = "time = { end = 1.0 }"};
@@ -141,7 +137,7 @@ Key fluid() {
                 {.name = "density", .type = Type::number, .doc = "Density.", .unit = "kg/m^3", .fallback = 1.0, .min = 0, .min_open = true},
                 {.name = "viscosity",
                  .type = Type::number,
-                 .doc = "Kinematic viscosity. It acts only where effects.viscosity is named.",
+                 .doc = "Kinematic viscosity. It acts only if effects.viscosity is named.",
                  .unit = "m^2/s",
                  .fallback = 0.0,
                  .min = 0,
@@ -153,22 +149,22 @@ Key side_temperature(std::string doc) { return {.name = "temperature", .type = T
 const std::vector<Variant>& side_kinds() {
     static const std::vector<Variant> list = {
         {"wall",
-         "Nothing passes.",
+         "Solid wall.",
          {{.name = "slip",
            .type = Type::choice,
-           .doc = "free: fluid glides along the wall; no: it sticks to it.",
+           .doc = "Boundary condition of the tangential velocity: free slip or no slip.",
            .fallback = std::string("free"),
            .choices = {"free", "no"}},
-          side_temperature("Temperature of the wall; without it no heat passes.")}},
+          side_temperature("Temperature of the wall; without it the wall is adiabatic.")}},
         {"moving_wall",
-         "A wall that moves along itself; fluid sticks to it.",
+         "A wall that moves tangentially, with no slip.",
          {{.name = "velocity",
            .type = Type::numbers,
-           .doc = "Velocity of the wall, along it.",
+           .doc = "Tangential velocity of the wall.",
            .unit = "m/s",
            .required = true,
            .length = -1},
-          side_temperature("Temperature of the wall; without it no heat passes.")}},
+          side_temperature("Temperature of the wall; without it the wall is adiabatic.")}},
         {"inflow",
          "Fluid enters with a given velocity.",
          {{.name = "velocity",
@@ -183,15 +179,16 @@ const std::vector<Variant>& side_kinds() {
            .fallback = std::string("uniform")},
           {.name = "smoke", .type = Type::number, .doc = "Smoke in the entering fluid.", .min = 0},
           side_temperature("Temperature of the entering fluid.")}},
-        {"outflow", "Open: the pressure is 0 and fluid passes both ways.", {side_temperature("Temperature of fluid that comes in.")}},
-        {"open", "Another word for outflow.", {side_temperature("Temperature of fluid that comes in.")}},
-        {"periodic", "What leaves here enters at the opposite side, which must be periodic too.", {}},
+        {"outflow", "Open: the pressure is 0 and fluid flows in and out.", {side_temperature("Temperature of fluid that comes in.")}},
+        {"open", "Alias of outflow.", {side_temperature("Temperature of fluid that comes in.")}},
+        {"periodic", "Periodic: fluid that leaves here enters at the opposite side, which must also be periodic.", {}},
     };
     return list;
 }
 
 Key sides() {
-    Key key{.name = "sides", .type = Type::table, .doc = "What stands at each side of the domain. A side that is not given is a wall."};
+    Key key{
+        .name = "sides", .type = Type::table, .doc = "Boundary condition at each side of the domain. A side that is not given is a wall."};
     for (const std::string axis : {"x", "y", "z"})
         for (const std::string end : {"min", "max"})
             key.keys.push_back({.name = axis + "_" + end,
@@ -210,12 +207,12 @@ Key solids() {
             .doc = "Bodies that fluid cannot enter.",
             .keys = {{.name = "slip",
                       .type = Type::choice,
-                      .doc = "free: fluid glides along the body; no: it sticks to it.",
+                      .doc = "Boundary condition of the tangential velocity: free slip or no slip.",
                       .fallback = std::string("free"),
                       .choices = {"free", "no"}},
                      {.name = "motion",
                       .type = Type::table,
-                      .doc = "Prescribed motion; without it the body rests.",
+                      .doc = "Prescribed motion; without it the body is at rest.",
                       .selector = "kind",
                       .variants_from = &motions}},
             .selector = "shape",
@@ -229,14 +226,14 @@ Key emitters() {
             .keys = {{.name = "velocity", .type = Type::numbers, .doc = "Velocity set inside.", .unit = "m/s", .length = -1},
                      {.name = "smoke", .type = Type::number, .doc = "Smoke set inside.", .min = 0},
                      {.name = "temperature", .type = Type::number, .doc = "Temperature set inside.", .unit = "K"},
-                     {.name = "start", .type = Type::number, .doc = "It works from here on.", .unit = "s", .fallback = 0.0, .min = 0},
-                     {.name = "end", .type = Type::number, .doc = "It works until here; for ever where absent.", .unit = "s", .min = 0}},
+                     {.name = "start", .type = Type::number, .doc = "Start time.", .unit = "s", .fallback = 0.0, .min = 0},
+                     {.name = "end", .type = Type::number, .doc = "End time; unlimited if absent.", .unit = "s", .min = 0}},
             .selector = "shape",
             .variants_from = &shapes};
 }
 
 Key initial() {
-    Key velocity = initial_field("velocity", "Velocity at t = 0; rest where absent.", "m/s");
+    Key velocity = initial_field("velocity", "Velocity at t = 0; at rest if absent.", "m/s");
     velocity.variants_from = nullptr;
     velocity.variants = {
         {"constant",
@@ -264,8 +261,8 @@ const std::vector<Variant>& probe_kinds() {
           probe_point("to", "Last point."),
           {.name = "count", .type = Type::integer, .doc = "Number of points.", .fallback = std::int64_t{64}, .min = 2, .max = 1e6}}},
         {"gauge",
-         "On a line along an axis: the height of the uppermost liquid above the domain's lower side, be it a drop, and the depth, how much "
-         "of the line lies in liquid.",
+         "On a line along an axis: the height of the uppermost liquid (also of a drop) above the domain's lower side, and the depth, the "
+         "length of the line in liquid.",
          {probe_point("at", "Any point of the line."),
           {.name = "axis", .type = Type::choice, .doc = "The line's axis.", .fallback = std::string("y"), .choices = {"x", "y", "z"}}}},
         {"wall_pressure",
@@ -275,7 +272,7 @@ const std::vector<Variant>& probe_kinds() {
          {probe_point("at", "The point.")}},
         {"integral", "A field summed over the fluid.", {probed_field()}},
         {"front",
-         "How far the liquid reaches along an axis.",
+         "Extent of the liquid along an axis.",
          {{.name = "axis", .type = Type::choice, .doc = "The axis.", .fallback = std::string("x"), .choices = {"x", "y", "z"}}}},
     };
     return list;
@@ -284,12 +281,12 @@ const std::vector<Variant>& probe_kinds() {
 Key probes() {
     return {.name = "probes",
             .type = Type::tables,
-            .doc = "Measurements written to CSV files, one a probe.",
+            .doc = "Measurements written to CSV files, one per probe.",
             .keys = {{.name = "name", .type = Type::text, .doc = "Name of the CSV file.", .required = true, .example = "name = \"front\""},
                      {.name = "every",
                       .type = Type::number,
-                      .doc = "Measurements at 0, every, 2 every, ..., linear in time between the steps before and after; after each step "
-                             "where absent.",
+                      .doc = "Interval of measurements (0, every, 2 every, ...), interpolated linearly in time between steps; after each "
+                             "step if absent.",
                       .unit = "s",
                       .min = 0,
                       .min_open = true}},
@@ -301,20 +298,20 @@ Key changes() {
     return {.name = "changes",
             .type = Type::tables,
             .doc =
-                "Keys that change while the run goes on, in the order of time. Steps meet these times exactly; a change is the same as "
-                "going on from a checkpoint with another --set. Keys that may are marked so.",
+                "Keys that change during the run, in the order of time. Steps end exactly at these times; a change is equivalent to a "
+                "restart from a checkpoint with another --set. The keys that may change are marked.",
             .keys = {{.name = "time", .type = Type::number, .doc = "When.", .unit = "s", .required = true, .min = 0},
-                     {.name = "key", .type = Type::text, .doc = "Which, such as \"effects.gravity.g\".", .required = true},
-                     {.name = "value", .type = Type::any, .doc = "What that key takes.", .required = true}}};
+                     {.name = "key", .type = Type::text, .doc = "Name of the key, such as \"effects.gravity.g\".", .required = true},
+                     {.name = "value", .type = Type::any, .doc = "New value of the key.", .required = true}}};
 }
 
 Key output() {
     return {.name = "output",
             .type = Type::table,
-            .doc = "Which frames are written, and what is in them.",
+            .doc = "Frames and their contents.",
             .keys = {{.name = "every",
                       .type = Type::number,
-                      .doc = "Interval between frames; only the first and the last where absent.",
+                      .doc = "Interval between frames; only the first and the last if absent.",
                       .unit = "s",
                       .min = 0,
                       .min_open = true},
@@ -327,17 +324,17 @@ Key output() {
                       .choices = {"step", "exact"}},
                      {.name = "fields",
                       .type = Type::texts,
-                      .doc = "Fields to write; all that the solver has where empty.",
+                      .doc = "Fields to write; all fields of the solver if empty.",
                       .fallback = std::vector<std::string>{}},
-                     {.name = "faces", .type = Type::flag, .doc = "Write the face components of the velocity too.", .fallback = false},
+                     {.name = "faces", .type = Type::flag, .doc = "Also write the face components of the velocity.", .fallback = false},
                      {.name = "precision",
                       .type = Type::choice,
-                      .doc = "Of the numbers in frames; checkpoints are always exact.",
+                      .doc = "Precision of values in frames; checkpoints are always exact.",
                       .fallback = std::string("double"),
                       .choices = {"double", "single"}},
                      {.name = "compression",
                       .type = Type::choice,
-                      .doc = "Of frames: zlib is understood everywhere, lz4 is faster.",
+                      .doc = "Compression of frames: zlib is read by all programs, lz4 is faster.",
                       .fallback = std::string("zlib"),
                       .choices = {"zlib", "lz4", "none"}}}};
 }
@@ -346,7 +343,7 @@ Key output() {
 
 const std::vector<Key>& common_keys() {
     static const std::vector<Key> list = {
-        {.name = "title", .type = Type::text, .doc = "One line for people.", .fallback = std::string()},
+        {.name = "title", .type = Type::text, .doc = "One-line description.", .fallback = std::string()},
         {.name = "solver",
          .type = Type::text,
          .doc = "Name of the solver; see `weir list solvers`.",
@@ -359,7 +356,7 @@ const std::vector<Key>& common_keys() {
         sides(),
         {.name = "liquid",
          .type = Type::tables,
-         .doc = "Where there is liquid at t = 0, for solvers with a free surface.",
+         .doc = "Regions of liquid at t = 0, for solvers with a free surface.",
          .selector = "shape",
          .variants_from = &shapes},
         solids(),

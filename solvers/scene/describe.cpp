@@ -39,7 +39,7 @@ std::string key_text(const Key& key, std::size_t indent) {
     if (key.required) line += "; required";
     if (!fallback.empty()) line += fmt::format("; {} if absent", fallback);
     if (key.only_dim) line += fmt::format("; only in {}D", key.only_dim);
-    if (key.steerable) line += "; may change while a run goes on";
+    if (key.steerable) line += "; may change during a run";
     line += "\n" + wrapped(key.doc, indent + 4);
     if (table)
         for (const Key& k : key.keys) line += key_text(k, indent + 4);
@@ -72,7 +72,7 @@ std::string solver_text(const SolverSchema& solver) {
     std::string out = fmt::format("solver \"{}\", dim = {}\n", solver.name, fmt::join(solver.dims, " or "));
     out += wrapped(solver.doc, 4);
     const OwnKeys own = own_keys(solver);
-    if (!own.leaves.empty()) out += "\nIts own keys, beside the common ones:\n";
+    if (!own.leaves.empty()) out += "\nKeys of this solver, in addition to the common ones:\n";
     for (const auto& leaf : own.leaves) out += "    " + leaf.path + key_text(leaf.key, 4).substr(4 + leaf.key.name.size());
     for (const auto& choice : own.choices)
         out += fmt::format("\n{} of {}:\n", choice.selector, fmt::join(choice.paths, ", ")) + names_text(choice.variants, 4);
@@ -81,7 +81,7 @@ std::string solver_text(const SolverSchema& solver) {
 }
 
 std::string overview(const std::vector<SolverSchema>& solvers) {
-    std::string out = "A scene is a TOML file. Units are SI; nothing is switched on by default.\n\nKeys of every scene:\n";
+    std::string out = "A scene is a TOML file. Units are SI; no effect is active by default.\n\nKeys of every scene:\n";
     const auto first_sentence = [](const std::string& doc) {
         return doc.substr(0, doc.find(". ") == std::string::npos ? doc.size() : doc.find(". ") + 1);
     };
@@ -93,7 +93,7 @@ std::string overview(const std::vector<SolverSchema>& solvers) {
         out += fmt::format("    {:9} {}\n", s.name, first_sentence(s.doc));
         if (!effects.empty()) out += wrapped(fmt::format("effects: {}", fmt::join(effects, ", ")), 14);
     }
-    return out + "\nweir describe NAME tells about a solver, an effect, a key such as time.cfl, a shape or a motion.\n";
+    return out + "\nweir describe NAME describes a solver, an effect, a key such as time.cfl, a shape or a motion.\n";
 }
 
 /// The solvers that have an effect with this text: "solver \"mac\"", "solvers \"mac\" and \"mac_water\"".
@@ -181,7 +181,7 @@ std::string describe(std::string_view topic, const std::vector<SolverSchema>& so
         }
     finder.keys(common_keys(), "", "");
     for (const SolverSchema& s : solvers) finder.keys(overlay(common_keys(), s.keys), "", s.name);
-    if (finder.text().empty()) throw BadInput(fmt::format("nothing is called {}{}", quote(topic), did_you_mean(topic, finder.names())));
+    if (finder.text().empty()) throw BadInput(fmt::format("unknown name {}{}", quote(topic), did_you_mean(topic, finder.names())));
     return finder.text();
 }
 

@@ -56,14 +56,14 @@ std::string told(const mu::Parser::exception_type& e) {
     const std::string& token = e.GetToken();
     switch (e.GetCode()) {
         case mu::ecUNASSIGNABLE_TOKEN:
-            return fmt::format("the formula knows no \"{}\"", token);
+            return fmt::format("unknown name \"{}\" in the formula", token);
         case mu::ecUNEXPECTED_EOF:
             return "the formula ends where a value is expected";
         case mu::ecMISSING_PARENS:
             return "a closing bracket is missing";
         case mu::ecTOO_FEW_PARAMS:
         case mu::ecTOO_MANY_PARAMS:
-            return fmt::format("\"{}\" wants another number of arguments", token);
+            return fmt::format("\"{}\" requires another number of arguments", token);
         default:
             return fmt::format("\"{}\" is not expected here", token);
     }
@@ -110,7 +110,7 @@ Formula::Formula(std::string_view text, const std::vector<std::string>& variable
 
 real Formula::operator()(std::span<const real> values) const {
     std::vector<real>& variables = compiled_->values;
-    if (values.size() < variables.size()) throw std::logic_error("a formula is asked with fewer values than it has variables");
+    if (values.size() < variables.size()) throw std::logic_error("a formula is evaluated with fewer values than it has variables");
     const std::lock_guard<std::mutex> lock(compiled_->one_at_a_time);
     std::copy_n(values.begin(), variables.size(), variables.begin());
     return compiled_->parser.Eval();

@@ -100,7 +100,7 @@ std::vector<std::string> every_key(const SolverSchema& schema) {
 std::vector<Problem> ignored_keys(const Scene& scene, const SolverSchema& schema) {
     std::vector<Problem> problems;
     for (const GivenKey& key : given_keys(scene, schema))
-        if (!key.read) problems.push_back(scene.problem(key.path, fmt::format("{} does nothing in this scene", key.path), key.doc));
+        if (!key.read) problems.push_back(scene.problem(key.path, fmt::format("{} has no effect in this scene", key.path), key.doc));
     return problems;
 }
 

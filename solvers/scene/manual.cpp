@@ -16,7 +16,7 @@ std::string row(const Key& key, const std::string& path) {
     const auto fallback = default_text(key);
     const std::string absent = key.required ? "required" : fallback.empty() ? "" : fmt::format("`{}`", fallback);
     const std::string dim = key.only_dim ? fmt::format(" Only in {}D.", key.only_dim) : "";
-    const char* steers = key.steerable ? " *May change while a run goes on.*" : "";
+    const char* steers = key.steerable ? " *May change during a run.*" : "";
     return fmt::format("| `{}` | {} | {} | {}{}{} |\n", path, escaped(value_text(key)), escaped(absent), escaped(key.doc), dim, steers);
 }
 
@@ -71,7 +71,7 @@ std::string top_section(const Key& key) {
     if (!key.example.empty()) out += fmt::format("```toml\n{}\n```\n", key.example);
     out += key_table(key.keys) + nested_variants(key);
     if (!key.selector.empty() && !has_own_section(key)) out += variants_section(key, "####");
-    if (key.variants_from == &shapes) out += "\nEach entry is a [shape](#shapes) with these keys beside its own.\n";
+    if (key.variants_from == &shapes) out += "\nEach entry is a [shape](#shapes) with these additional keys.\n";
     return out;
 }
 
@@ -79,7 +79,7 @@ std::string top_section(const Key& key) {
 std::string choice_list(const OwnKeys::Choice& choice) {
     std::string paths;
     for (const auto& path : choice.paths) paths += (paths.empty() ? "`" : ", `") + path + "`";
-    std::string out = fmt::format("\nA {} that {} may have here:\n\n", choice.selector, paths);
+    std::string out = fmt::format("\nA {} that {} may contain here:\n\n", choice.selector, paths);
     for (const Variant& v : choice.variants) {
         out += fmt::format("- `{}`{}\n", v.name, v.doc.empty() ? "" : ": " + v.doc);
         for (const Key& k : v.keys) {
@@ -98,7 +98,7 @@ std::string solver_section(const SolverSchema& solver) {
     for (const auto& leaf : own.leaves) out += row(leaf.key, leaf.path);
     for (const auto& choice : own.choices) out += choice_list(choice);
     if (!solver.without.empty())
-        out += fmt::format("\nIt has no use for `{}`, and refuses a scene that says them.\n", fmt::join(solver.without, "`, `"));
+        out += fmt::format("\nIt does not support `{}`, and refuses a scene that contains them.\n", fmt::join(solver.without, "`, `"));
     if (!solver.effects.empty()) out += fmt::format("\nEffects of `{}`:\n", solver.name);
     for (const Variant& effect : solver.effects) out += variant_section(effect, "####");
     return out;
@@ -106,16 +106,16 @@ std::string solver_section(const SolverSchema& solver) {
 
 constexpr const char* introduction = R"(# Scenes
 <!-- Written by `weir describe --markdown`; do not edit. -->
-A scene is a [TOML](https://toml.io) file that says what exists at the beginning and what acts on it. Units are SI: metres, seconds,
-kilograms, kelvins. Nothing is switched on by default: an effect that is not named costs nothing. Lists called "dim numbers" have two
-entries in 2D and three in 3D.
+A scene is a [TOML](https://toml.io) file that defines the initial state and the effects. Units are SI: metres, seconds, kilograms,
+kelvins. No effect is active by default: an effect that is not named costs nothing. Lists called "dim numbers" have two entries in 2D
+and three in 3D.
 
-Every mistake in a file is reported at once, with its line, what is allowed, and the nearest known name; nothing is run or written then.
+All errors in a file are reported together, each with its line, the allowed values, and the nearest known name; nothing is run or written.
 
 Any key can be changed on the command line: `--set grid.cells=[64,64]`, `--set solids[0].radius=0.2`, `--set scheme.poisson.method=cg`.
-Of a list, `--set bodies[:]=3` keeps the first three.
+`--set bodies[:]=3` keeps the first three entries of a list.
 
-Where a table chooses a `shape`, a `kind` or a `name` and needs nothing else, its name alone will do: `sides.x_max = "outflow"`.
+A table that only chooses a `shape`, a `kind` or a `name` may be given as that name: `sides.x_max = "outflow"`.
 
 ## Keys of every scene
 )";

@@ -125,7 +125,7 @@ std::string cut(Node& list, const std::string& path, const Node& keep) {
     if (list.kind != Node::Kind::list) return fmt::format("{} is {}, not a list", path, found(list));
     const auto entries = static_cast<std::int64_t>(list.list.size());
     if (keep.kind != Node::Kind::integer || keep.integer < 0 || keep.integer > entries)
-        return fmt::format("{}[:] is how many entries of {} stay, from 0 to {}, and this is {}", path, path, entries, found(keep));
+        return fmt::format("{}[:] is the number of entries of {} to keep, from 0 to {}; found {}", path, path, entries, found(keep));
     list.list.resize(static_cast<std::size_t>(keep.integer));
     return "";
 }

@@ -99,8 +99,8 @@ void Reader::wrong_type(const Node& node, const Key& key, const std::string& pat
     std::string hint;
     const bool named_table = !key.selector.empty() && key.type == Type::table;
     if (key.type == Type::tables && node.kind == Node::Kind::table) hint = fmt::format("[[{}]] begins an entry of a list", path);
-    if ((key.type == Type::number || key.type == Type::integer) && node.kind == Node::Kind::text) hint = "a number stands without quotes";
-    if (key.type == Type::flag && node.kind == Node::Kind::text) hint = "true and false stand without quotes";
+    if ((key.type == Type::number || key.type == Type::integer) && node.kind == Node::Kind::text) hint = "write a number without quotes";
+    if (key.type == Type::flag && node.kind == Node::Kind::text) hint = "write true and false without quotes";
     if (hint.empty() && !key.example.empty() && !(key.length == -1 && dim_ == 3)) hint = "such as " + key.example;
     report(node.place,
            fmt::format("{} must be {}{}; found {}", path, expected(key, dim_),
@@ -162,14 +162,14 @@ void Reader::unknown_key(const Member& member, const Allowed& allowed, const std
     }
     const std::string full = path.empty() ? member.key : path + "." + member.key;
     if (const SolverSchema* s = without(full); s && !s->why_without.empty())
-        return report(member.place, fmt::format("solver \"{}\" has no use for {}", solver_, full), s->why_without);
+        return report(member.place, fmt::format("solver \"{}\" does not support {}", solver_, full), s->why_without);
     if (const auto others = solvers_with(member.key, false); path.empty() && !others.empty()) {
         if (!solver_.empty())
             report(member.place, fmt::format("solver \"{}\" has no key \"{}\"; {}", solver_, member.key, solvers_have_it(others)),
                    known(names));
         return;
     }
-    if (without(full)) return report(member.place, fmt::format("solver \"{}\" has no use for {}", solver_, full), known(names));
+    if (without(full)) return report(member.place, fmt::format("solver \"{}\" does not support {}", solver_, full), known(names));
     std::string meant = did_you_mean(member.key, names);
     if (const auto there = place_elsewhere(member.key); meant.empty() && !there.empty()) meant = fmt::format("; did you mean {}?", there);
     report(member.place, fmt::format("unknown key {}{}{}{}", quote(member.key), path.empty() ? "" : " in " + path, kind, meant),

@@ -39,8 +39,8 @@ void check_resolution(const Table& root, const Domain& domain, const Report& rep
         const double farthest = std::max(std::abs(domain.min[d]), std::abs(domain.max[d]));
         if (!std::isfinite(farthest) || width < 1e3 * std::numeric_limits<double>::epsilon() * farthest)
             return report(root.place("grid.size"),
-                          fmt::format("cells of {:.3g} m along {} cannot be told apart at {} = {:.3g} m in double precision", width, axis,
-                                      axis, farthest));
+                          fmt::format("cells of {:.3g} m along {} cannot be distinguished at {} = {:.3g} m in double precision", width,
+                                      axis, axis, farthest));
     }
 }
 

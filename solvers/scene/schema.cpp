@@ -106,12 +106,12 @@ std::vector<Key> overlay(std::vector<Key> base, const std::vector<Key>& more) {
 std::vector<Key> keys_of(const SolverSchema& solver) {
     auto keys = overlay(common_keys(), solver.keys);
     for (const auto& path : solver.without) leave_out(keys, path);
-    keys.push_back(
-        {.name = "effects",
-         .type = Type::named,
-         .doc = "What acts on the fluid beside its own motion. An effect that is not named allocates no field and costs no pass.",
-         .variants = solver.effects,
-         .example = "effects = { gravity = { g = [0.0, -9.81] } }"});
+    keys.push_back({.name = "effects",
+                    .type = Type::named,
+                    .doc = "Forces, sources and other physics in addition to advection and pressure. An effect that is not named allocates "
+                           "no field and runs no pass.",
+                    .variants = solver.effects,
+                    .example = "effects = { gravity = { g = [0.0, -9.81] } }"});
     return keys;
 }
 

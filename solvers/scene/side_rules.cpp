@@ -45,7 +45,7 @@ void check_periodic(Table& root, int dim, const Report& report) {
             report(root.place(side_name(axis, first) + ".kind"),
                    fmt::format("{} is periodic, but {} is {}", side_name(axis, first), side_name(axis, 1 - first),
                                quote(kinds[static_cast<std::size_t>(1 - first)])),
-                   "both ends of an axis are periodic, or neither");
+                   "make both ends of an axis periodic, or neither");
         }
         if (by_list || (kinds[0] == "periodic" && kinds[1] == "periodic")) periodic.push_back(axis_name(axis));
     }

@@ -146,7 +146,7 @@ private:
             refuse(fmt::format("a key of more than {} parts", max_dots));
         } else if (static_cast<unsigned char>(c) >= 0x80) {
             const auto letter = s_.substr(i_, std::max<std::size_t>(1, sequence_length(s_.substr(i_, 4))));
-            refuse(fmt::format("{} can only stand in a text or a comment", quote(letter)), "keys are letters, digits, '_' and '-'");
+            refuse(fmt::format("{} is allowed only in a text or a comment", quote(letter)), "keys are letters, digits, '_' and '-'");
         }
         if (std::string_view(",=[]{}").find(c) != std::string_view::npos) dots_ = 0;
     }

@@ -31,12 +31,12 @@ void collect(const std::vector<Key>& keys, const Table& table, const std::string
 std::string reason(std::string_view path) {
     const std::string_view top = path.substr(0, path.find_first_of(".["));
     for (const char* key : {"solver", "dim", "grid"})
-        if (top == key) return "the state is laid out by it";
+        if (top == key) return "the layout of the state depends on it";
     for (const char* key : {"initial", "liquid", "terrain"})
-        if (top == key) return "it is read at the start alone";
+        if (top == key) return "it is read only at the start";
     for (const char* key : {"title", "probes", "output"})
-        if (top == key) return "what is written of a run is one series from its start to its end";
-    return "what was built for it, or has come of it, cannot be carried over";
+        if (top == key) return "the output of a run is one series from start to end";
+    return "data built for it, or computed from it, cannot be converted";
 }
 
 }  // namespace
@@ -90,7 +90,7 @@ void steer(Table& root, int dim, const SolverSchema& solver, const Override& cha
         problems.push_back({.place = {0, 1, number}, .width = 1, .message = std::move(message), .hint = std::move(hint)});
     };
     if (const auto why = why_not_steerable(root, solver, change.key); !why.empty())
-        return report(fmt::format("{} cannot change while a run goes on: {}", change.key, why), known(steerable_keys(root, solver)));
+        return report(fmt::format("{} cannot change during a run: {}", change.key, why), known(steerable_keys(root, solver)));
     Node node;
     if (!override_value(change, number, node, problems)) return;
     const auto keys = keys_of(solver);
@@ -117,7 +117,7 @@ void check_changes(const Table& root, int dim, const std::string& file, const So
             problems.push_back({.file = file, .place = t.place(key), .message = std::move(message), .hint = std::move(hint)});
         };
         if (i > 0 && tables[i - 1].has("time") && t.number("time") < tables[i - 1].number("time"))
-            at("time", fmt::format("changes[{}] is at {} s, before the one above at {} s", i, number_text(t.number("time")),
+            at("time", fmt::format("changes[{}] is at {} s, before the previous one at {} s", i, number_text(t.number("time")),
                                    number_text(tables[i - 1].number("time"))));
         std::vector<Problem> wrong;
         const Override change{t.text("key"), to_toml(*t.find("value"))};

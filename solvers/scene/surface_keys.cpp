@@ -20,7 +20,7 @@ std::vector<Variant> surfaces_of_particles() {
     return {{"zhu_bridson", "Distance to the weighted mean of the particles near (Zhu & Bridson 2005).", {surface_cell_key()}},
             {"anisotropic", "Kernels stretched along the surface, flat across it (Yu & Turk 2013).", {surface_cell_key()}},
             {"density",
-             "A level of the particles' density, and the mesh smoothed where particles are many (Loeschner et al. 2023).",
+             "An isosurface of the particles' density, with the mesh smoothed where particles are dense (Loeschner et al. 2023).",
              {surface_cell_key(),
               {.name = "smoothing",
                .type = Type::integer,
@@ -31,15 +31,14 @@ std::vector<Variant> surfaces_of_particles() {
 }
 
 Key output_with(std::vector<Variant> methods) {
-    return {
-        .name = "output",
-        .type = Type::table,
-        .keys = {{.name = "surface",
-                  .type = Type::table,
-                  .doc = "Write the liquid's surface as triangles, in 2D as lines, beside the frames (liquid_surface.pvd), with normals, "
-                         "velocity and thickness of the liquid below. It is closed: at walls, solids and open sides too.",
-                  .selector = "method",
-                  .variants = std::move(methods)}}};
+    return {.name = "output",
+            .type = Type::table,
+            .keys = {{.name = "surface",
+                      .type = Type::table,
+                      .doc = "Write the liquid's surface as triangles, in 2D as lines, beside the frames (liquid_surface.pvd), with "
+                             "normals, velocity and thickness of the liquid below. It is closed, also at walls, solids and open sides.",
+                      .selector = "method",
+                      .variants = std::move(methods)}}};
 }
 
 }  // namespace

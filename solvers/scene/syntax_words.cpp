@@ -57,7 +57,7 @@ Problem added_to_braces(Place place, const SourceText& text) {
     const std::string name(key.substr(0, key.find('.')));
     Problem problem = given_twice(name, place, text);
     if (const int first = first_given(text, place.line, name))
-        problem.hint = fmt::format("\"{}\" stands in braces in line {}: write {} there", name, first, key.substr(key.find('.') + 1));
+        problem.hint = fmt::format("\"{}\" is defined in braces in line {}: add {} there", name, first, key.substr(key.find('.') + 1));
     return problem;
 }
 
@@ -81,7 +81,7 @@ Problem bare_word(Place place, const SourceText& text) {
         problem.message = fmt::format("{} is not a value; did you mean {}?", phrase, lower);
     } else if (!phrase.empty() && std::isalpha(static_cast<unsigned char>(phrase[0]))) {
         problem.message = fmt::format("{} is not a value", phrase);
-        problem.hint = fmt::format("a text stands in quotes: \"{}\"", phrase);
+        problem.hint = fmt::format("write a text in quotes: \"{}\"", phrase);
     }
     return problem;
 }

@@ -105,7 +105,7 @@ std::string percent(real part) { return fmt::format("{:.2g}%", 100 * std::abs(pa
 
 std::string what_helps(const scene::Scene& scene) {
     if (scene.solver() == "mac_water" || scene.solver() == "tallcell")
-        return scene.effect("volume_control") ? "refine the grid" : "refine the grid, or name effects.volume_control";
+        return scene.effect("volume_control") ? "refine the grid" : "refine the grid, or add effects.volume_control";
     return "refine the grid, or shorten the steps (time.cfl)";
 }
 
@@ -115,7 +115,7 @@ void warn_of_quantity(const scene::Scene& scene, const Balanced& b, std::vector<
     const std::string from_to = fmt::format("{:.4g} {} to {:.4g} {}", b.start, b.unit, b.end, b.unit);
     const bool exchanged = std::abs(*b.inflow) > 1e-9 * b.scale;
     const std::string text = exchanged
-                                 ? fmt::format("{} is {} {} what came in and went out leaves ({}, net inflow {:.4g} {})", name,
+                                 ? fmt::format("{} is {} {} the value expected from inflow and outflow ({}, net inflow {:.4g} {})", name,
                                                percent(*b.unexplained), *b.unexplained < 0 ? "below" : "above", from_to, *b.inflow, b.unit)
                                  : fmt::format("{} {} by {} without an {} ({})", name, *b.unexplained < 0 ? "fell" : "rose",
                                                percent(*b.unexplained), *b.unexplained < 0 ? "outlet" : "inlet", from_to);
@@ -125,8 +125,8 @@ void warn_of_quantity(const scene::Scene& scene, const Balanced& b, std::vector<
 void warn_of_energy(const Balanced& b, std::vector<std::string>& warnings) {
     if (!b.unexplained || !(*b.unexplained > tolerated)) return;
     warnings.push_back(
-        fmt::format("the total energy rose by {} above its start, and nothing does work on the fluid ({:.4g} {} to {:.4g} {}); "
-                    "refine the grid, or shorten the steps (time.cfl)",
+        fmt::format("the total energy rose by {} above its initial value, although nothing does work on the fluid ({:.4g} {} to {:.4g} "
+                    "{}); refine the grid, or shorten the steps (time.cfl)",
                     percent(*b.unexplained), b.start, b.unit, *b.highest, b.unit));
 }
 

@@ -16,7 +16,8 @@ namespace {
 std::string full_name(const std::string& set, const std::string& name) { return set.empty() ? name : set + "." + name; }
 
 void check_values(const std::string& name, const std::vector<real>& values, std::size_t wanted, real min, real max) {
-    if (values.size() != wanted) throw BadInput(fmt::format("\"{}\" has {} values a component, not {}", name, wanted, values.size()));
+    if (values.size() != wanted)
+        throw BadInput(fmt::format("\"{}\" has {} values per component; expected {}", name, wanted, values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!std::isfinite(values[i])) throw BadInput(fmt::format("\"{}\" is not finite at {}", name, i));
         if (values[i] < min || values[i] > max)
@@ -38,7 +39,7 @@ private:
 
 /// Edits need the whole state, but a rank may hold only a part of it.
 void one_process_only(const std::string& what) {
-    if (slabs().several()) throw BadInput(fmt::format("{} in one process only, and there are {}", what, slabs().ranks()));
+    if (slabs().several()) throw BadInput(fmt::format("{} in one process only, and the number of ranks is {}", what, slabs().ranks()));
 }
 
 /// Checks that a point has as many coordinates as the scene has dimensions.
@@ -75,7 +76,7 @@ EditableField Simulation::editable_named(std::string_view name) {
 }
 
 void Simulation::refuse_while_edited(const char* what) const {
-    if (!edited_.empty()) throw BadInput(fmt::format("\"{}\" is being edited: {} after that, not meanwhile", edited_, what));
+    if (!edited_.empty()) throw BadInput(fmt::format("\"{}\" is being edited: {} only after that", edited_, what));
 }
 
 /// Applies the whole change or none of it.
@@ -124,7 +125,8 @@ void Simulation::add_particles(std::string_view set, std::span<const Vec<3>> at,
     check_points(velocity, "the velocity of particle", grid, false);
     change_state([&](Solver& solver) {
         if (!solver.add_particles(set, at, velocity))
-            throw BadInput(fmt::format("solver \"{}\" takes no particles of a set \"{}\" in this scene", scene_.solver(), set));
+            throw BadInput(
+                fmt::format("solver \"{}\" does not support adding particles of a set \"{}\" in this scene", scene_.solver(), set));
     });
 }
 
@@ -141,12 +143,13 @@ void Simulation::remove_particles(std::string_view set, std::span<const std::siz
     if (which.empty()) return;
     change_state([&](Solver& solver) {
         if (!solver.remove_particles(set, gone))
-            throw BadInput(fmt::format("solver \"{}\" lets nobody take particles of a set \"{}\" in this scene", scene_.solver(), set));
+            throw BadInput(
+                fmt::format("solver \"{}\" does not support removing particles of a set \"{}\" in this scene", scene_.solver(), set));
     });
 }
 
 void Simulation::observe_steps(Observer observer, std::int64_t every) {
-    if (every < 1) throw BadInput(fmt::format("every {} steps is never: at least 1", every));
+    if (every < 1) throw BadInput(fmt::format("an interval of {} steps; at least 1", every));
     observers_.push_back({every, std::move(observer)});
 }
 

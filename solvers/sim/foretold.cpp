@@ -421,10 +421,10 @@ void require_memory(const scene::Scene& scene, const std::vector<scene::SolverKi
     constexpr double gigabyte = 1e9;
     std::string count = fmt::format("{:.3g} cells", cells);
     if (f.particles > 0) count += fmt::format(" and {:.3g} particles", f.particles);
-    scene.refuse(
-        "grid.cells",
-        fmt::format("{} need {:.3g} GB of memory; {:.3g} GB of this machine's are free", count, needed / gigabyte, available / gigabyte),
-        fmt::format("{:.0f} bytes a cell, as small copies of this scene hold them", f.bytes / cells));
+    scene.refuse("grid.cells",
+                 fmt::format("{} require {:.3g} GB of memory; {:.3g} GB are available on this machine", count, needed / gigabyte,
+                             available / gigabyte),
+                 fmt::format("{:.0f} bytes per cell, estimated from coarser copies of this scene", f.bytes / cells));
 }
 
 }  // namespace weir::sim

@@ -285,8 +285,7 @@ private:
             if (name == wanted) return std::make_unique<BodyTrack>(fields_, b);
             known += (known.empty() ? "" : ", ") + name;
         }
-        scene_.refuse(path_ + ".body", "this scene has no body \"" + wanted + "\"",
-                      known.empty() ? "it has none at all" : "known: " + known);
+        scene_.refuse(path_ + ".body", "this scene has no body \"" + wanted + "\"", known.empty() ? "it has no bodies" : "known: " + known);
     }
 
     const FieldView& grid_field() const {

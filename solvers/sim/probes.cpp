@@ -34,7 +34,7 @@ constexpr real most_rows = 1e7;
 void require_rows(const scene::Scene& scene, std::size_t probe, real every) {
     const real rows = scene.number("time.end") / every;
     if (rows > most_rows)
-        scene.refuse("probes[" + std::to_string(probe) + "].every", fmt::format("until time.end these are {:.3g} rows", rows),
+        scene.refuse("probes[" + std::to_string(probe) + "].every", fmt::format("until time.end the probe writes {:.3g} rows", rows),
                      fmt::format("at most {:.0e}", most_rows));
 }
 
@@ -57,7 +57,7 @@ Probes::Probes(const scene::Scene& scene, const Solver& solver) {
         series.kind = tables[i].text("kind");
         const std::string key = "probes[" + std::to_string(i) + "].name";
         if (series.name.empty() || series.name.find_first_of("/\\") != std::string::npos || series.name[0] == '.')
-            scene.refuse(key, "\"" + series.name + "\" cannot be the name of a file", "a probe's name becomes probes/<name>.csv");
+            scene.refuse(key, "\"" + series.name + "\" cannot be the name of a file", "a probe is written to probes/<name>.csv");
         for (const auto& other : series_)
             if (other.name == series.name) scene.refuse(key, "two probes are called \"" + series.name + "\"");
         kinds_.push_back(make_probe(scene, i, solver));
@@ -184,7 +184,8 @@ void Probes::restore(const Checkpoint& from) {
         from.get(key + "times", series.times);
         from.get(key + "values", rows);
         const std::size_t width = series.columns.size();
-        if (rows.size() != width * series.times.size()) throw BadInput("the checkpoint's probe \"" + series.name + "\" is another one");
+        if (rows.size() != width * series.times.size())
+            throw BadInput("the checkpoint's probe \"" + series.name + "\" differs from that of the scene");
         for (std::size_t r = 0; r < series.times.size(); ++r)
             series.values.emplace_back(rows.begin() + static_cast<std::ptrdiff_t>(r * width),
                                        rows.begin() + static_cast<std::ptrdiff_t>((r + 1) * width));
@@ -192,7 +193,7 @@ void Probes::restore(const Checkpoint& from) {
         clocks_[i].next = from.get_value<std::int64_t>(key + "row");
         from.get(key + "begin", clocks_[i].begin);
         if (!clocks_[i].begin.empty() && clocks_[i].begin.size() != width)
-            throw BadInput("the checkpoint's probe \"" + series.name + "\" is another one");
+            throw BadInput("the checkpoint's probe \"" + series.name + "\" differs from that of the scene");
     }
 }
 

@@ -54,14 +54,16 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
         std::string able;
         for (const auto& other : kinds)
             if (other.over_ranks) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
-        scene.refuse("solver", "solver " + scene::quote(scene.solver()) + " runs in one process, and there are " + std::to_string(ranks),
-                     "over ranks: " + able);
+        scene.refuse(
+            "solver",
+            "solver " + scene::quote(scene.solver()) + " runs in one process only, and the number of ranks is " + std::to_string(ranks),
+            "solvers that run in parallel: " + able);
     }
     kind.over_ranks(scene);
     const int planes = planes_of(scene);
     if (kind.shared == scene::Shared::by_planes && planes < ranks && !(kind.cut && kind.cut(scene, ranks).empty()))
         scene.refuse("grid.cells",
-                     std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") + " cannot be shared by " +
+                     std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") + " cannot be partitioned over " +
                          std::to_string(ranks) + " ranks",
                      "at most " + std::to_string(planes));
 }

@@ -75,10 +75,10 @@ void require(const scene::Scene& scene) {
         if (room < (1 - told_apart) * liquid)
             scene.refuse(
                 path,
-                fmt::format("at t = {:.3g} s the solids that move leave room for {:.4g} {}, and the domain, which is closed, has {:.4g} of "
-                            "liquid",
-                            t, room, D == 2 ? "m^2" : "m^3", liquid),
-                "a side of kind \"outflow\", less liquid, or a motion that leaves it room");
+                fmt::format(
+                    "at t = {:.3g} s the moving solids leave a volume of {:.4g} {}, and the closed domain contains {:.4g} of liquid", t,
+                    room, D == 2 ? "m^2" : "m^3", liquid),
+                "add a side of kind \"outflow\", reduce the liquid, or change the motion");
     }
 }
 

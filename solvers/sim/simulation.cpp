@@ -53,9 +53,8 @@ void require_same_domain(const scene::Scene& scene, const Checkpoint& from) {
     from.get(domain_block, there);
     if (const std::vector<real> here = domain_of(scene); here != there)
         throw BadInput(
-            fmt::format("{}: the checkpoint does not fit the scene: it is of a run with [cells, size, origin] = [{}], and the scene has "
-                        "[{}]: a run goes on in "
-                        "its own domain; grid.cells, grid.size and grid.origin stay as they are",
+            fmt::format("{}: the checkpoint does not match the scene: it belongs to a run with [cells, size, origin] = [{}], and the scene "
+                        "has [{}]; leave grid.cells, grid.size and grid.origin unchanged",
                         scene.file(), fmt::join(there, ", "), fmt::join(here, ", ")));
 }
 
@@ -72,13 +71,13 @@ std::int64_t get_count(const Checkpoint& from, const std::string& name) {
 void require_sound(const Simulation& simulation) {
     constexpr real far = 1e6;  // an embedding program may step past the end, but not this far
     if (!(simulation.time() >= 0 && simulation.time() <= far * simulation.end_time()))
-        throw BadInput(fmt::format("the checkpoint is of no run: its time is {} s, and the end of its scene is {} s",
+        throw BadInput(fmt::format("the checkpoint is invalid: its time is {} s, and the end of its scene is {} s",
                                    scene::number_text(simulation.time()), scene::number_text(simulation.end_time())));
     if (slabs().several()) return;  // in parallel (MPI) a rank holds a part of them: the first step checks it
     try {
         sim::check_finite(simulation.fields(), {});
     } catch (const NumericalFailure& failure) {
-        throw BadInput(std::string("the checkpoint is of no run: ") + failure.what());
+        throw BadInput(std::string("the checkpoint is invalid: ") + failure.what());
     }
 }
 
@@ -203,7 +202,7 @@ void Simulation::steer(const scene::Override& change) {
     solver_->save(state);
     std::unique_ptr<Solver> solver = make_solver(changed, kind_, shares_->cut);
     if (!change.key.starts_with("time.") && !changed.root().was_read(change.key))
-        changed.refuse(change.key, change.key + " does nothing in this scene");
+        changed.refuse(change.key, change.key + " has no effect in this scene");
     solver->restore(state);
     replace(std::move(solver));
     scene_ = std::move(changed);
@@ -277,7 +276,7 @@ void Simulation::meet_changes() {
 StepReport Simulation::step() { return step_until(infinity); }
 
 StepReport Simulation::step_until(real t) {
-    if (std::isnan(t)) throw BadInput("step_until(nan): a step goes until a time [s]");
+    if (std::isnan(t)) throw BadInput("step_until(nan): expected a time [s]");
     refuse_while_edited("the simulation steps");
     meet_changes();
     const StepReport report = step_towards(std::min(t, finished() && t < infinity ? infinity : next_target()));
@@ -291,7 +290,7 @@ StepReport Simulation::step_until(real t) {
 }
 
 void Simulation::run_until(real t) {
-    if (!std::isfinite(t)) throw BadInput(fmt::format("run_until({}): a run goes on until a finite time [s]", t));
+    if (!std::isfinite(t)) throw BadInput(fmt::format("run_until({}): expected a finite time [s]", t));
     while (!reached(t)) step_until(t);
 }
 
@@ -408,8 +407,8 @@ void Simulation::tell_of_parts(real wanted, real dt, const StepLimit& limit) {
     split_ = true;
     const char* key = scene_.has("time.dt") ? "time.dt" : "time.cfl";
     warnings_.push_back(
-        fmt::format("{}: {} asks for a step of {:.4g} s at t = {:.4g} s, and the solver is stable up to {:.4g} s ({}): from here on such "
-                    "steps are taken in parts, of {:.4g} s now (time.guard = \"off\" takes them whole)",
+        fmt::format("{}: {} requests a step of {:.4g} s at t = {:.4g} s, and the solver is stable up to {:.4g} s ({}): from here on such "
+                    "steps are divided into substeps, now of {:.4g} s (time.guard = \"off\" disables this)",
                     scene_.file(), key, wanted, time(), limit.dt, limit.why, dt));
 }
 
@@ -440,7 +439,7 @@ void Simulation::resume_changes(const Checkpoint& from) {
 }
 
 void Simulation::restore(const Checkpoint& from) {
-    refuse_while_edited("the simulation goes on from a checkpoint");
+    refuse_while_edited("the simulation restarts from a checkpoint");
     try {
         require_same_domain(scene_, from);
         resume_changes(from);
@@ -462,7 +461,7 @@ void Simulation::restore(const Checkpoint& from) {
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {  // also for invalid vector sizes
-        throw BadInput(std::string("the checkpoint does not fit the scene: ") + error.what());
+        throw BadInput(std::string("the checkpoint does not match the scene: ") + error.what());
     }
 }
 
@@ -477,7 +476,7 @@ std::vector<scene::Override> get_overrides(const Checkpoint& from) {
     for (std::size_t at = 0; at < lines.size();) {
         const std::size_t stop = lines.find('\0', at), equals = lines.find('=', at);
         if (stop == std::string::npos || equals > stop)
-            throw std::runtime_error("checkpoint block \"sim.overrides\" is no list of changes");
+            throw std::runtime_error("checkpoint block \"sim.overrides\" is not a list of changes");
         overrides.push_back({lines.substr(at, equals - at), lines.substr(equals + 1, stop - equals - 1)});
         at = stop + 1;
     }
@@ -495,7 +494,7 @@ scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Ove
     } catch (const BadInput&) {
         throw;
     } catch (const std::runtime_error& error) {
-        throw BadInput(std::string("the checkpoint holds no scene: ") + error.what());
+        throw BadInput(std::string("the checkpoint contains no scene: ") + error.what());
     }
     overrides.insert(overrides.end(), more.begin(), more.end());
     return scene::parse(source, file, sim::schemas(), overrides);

@@ -90,15 +90,15 @@ std::string ThreadChoice::warning() {
     if (slowdown_ > hopeless && !told_slow_) {
         told_slow_ = true;
         return fmt::format(
-            "a step on {} threads takes {:.1f} times as long as on one, because other processes are busy: the run goes on with one thread "
-            "and tries again later (--threads N uses N)",
+            "a step on {} threads takes {:.1f} times as long as on one, because other processes are busy: the run continues with one "
+            "thread and tries again later (--threads N fixes N)",
             most_, slowdown_);
     }
     if (waiting_ == steps_of_waiting && !told_waiting_) {
         told_waiting_ = true;
         return fmt::format(
-            "steps on {} threads wait longer than they work ({:.3g} of {:.3g} ms), because other processes are busy: --threads 1 may be "
-            "faster",
+            "steps on {} threads spend more time waiting than computing ({:.3g} of {:.3g} ms), because other processes are busy: --threads "
+            "1 may be faster",
             count_, 1e3 * (wall_ - cpu_) / waiting_, 1e3 * wall_ / waiting_);
     }
     return {};

@@ -16,15 +16,15 @@ Key scheme() {
     const Options usual;
     return particles::scheme_key(
         "Numerical choices of SPH.",
-        "wendland and cubic: one kernel for all, so that forces between particles are the gradient of an energy. muller: as published in "
-        "2003, poly6 for density, spiky for pressure, its own for viscosity; these have no common energy and feed a liquid at rest, so "
-        "they need viscosity.",
+        "wendland and cubic: one kernel for all terms, so that forces between particles are the gradient of an energy. muller: as "
+        "published in 2003, poly6 for density, spiky for pressure, its own for viscosity; these have no common energy and add energy to a "
+        "liquid at rest, so they require viscosity.",
         usual,
         {{.name = "sound_speed",
           .type = Type::number,
-          .doc = "Speed of sound; absent: ten times the fastest flow that can be told before the start, which keeps density "
-                 "within one per cent: a fall from the highest liquid to the bottom of the domain, initial velocities, "
-                 "emitters, moving walls and solids (10 m/s where there are none).",
+          .doc = "Speed of sound; if absent: ten times the fastest flow that can be estimated before the start, which keeps density within "
+                 "1%: a fall from the highest liquid to the bottom of the domain, initial velocities, emitters, moving walls and solids "
+                 "(10 m/s where there are none).",
           .unit = "m/s",
           .min = 0,
           .min_open = true},
@@ -33,13 +33,13 @@ Key scheme() {
           .doc = "Equation of state. linear: p = c^2 (rho - rho0); tait: c^2 rho0 / gamma ((rho / rho0)^gamma - 1).",
           .fallback = std::string("linear"),
           .choices = {"linear", "tait"}},
-         {.name = "gamma", .type = Type::number, .doc = "Of Tait's equation.", .fallback = 7.0, .min = 1.0},
+         {.name = "gamma", .type = Type::number, .doc = "Exponent of Tait's equation.", .fallback = 7.0, .min = 1.0},
          {.name = "density",
           .type = Type::choice,
-          .doc = "summation: of the kernel over neighbours (Müller et al. 2003), which thins at a free surface. continuity: by its "
-                 "rate, which a surface does not thin. delta: continuity with the diffusion of density (delta = 0.1) and the "
-                 "artificial viscosity (alpha = 0.02) of delta-SPH (Marrone et al. 2011), without which a column at rest goes "
-                 "on ringing; the effects of these names set other values.",
+          .doc = "summation: of the kernel over neighbours (Müller et al. 2003), which underestimates density at a free surface. "
+                 "continuity: the continuity equation, without that deficit. delta: continuity with the diffusion of density (delta = 0.1) "
+                 "and the artificial viscosity (alpha = 0.02) of delta-SPH (Marrone et al. 2011), without which pressure waves in a column "
+                 "at rest persist; the effects of these names set other values.",
           .fallback = std::string("delta"),
           .choices = {"delta", "continuity", "summation"}},
          {.name = "tension", .type = Type::flag, .doc = "Whether pressure may be negative.", .fallback = usual.tension}});
@@ -54,8 +54,7 @@ std::vector<scene::Variant> effects() {
                     {"fluid.viscosity"}});
     list.push_back(
         {"density_diffusion",
-         "Density spreads over neighbours, but for what it varies by at rest (delta-SPH: Molteni & Colagrossi 2009; Fourtakas "
-         "et al. 2019).",
+         "Diffusion of density, without its hydrostatic part (delta-SPH: Molteni & Colagrossi 2009; Fourtakas et al. 2019).",
          {{.name = "delta", .type = Type::number, .doc = "Its strength.", .fallback = 0.1, .min = 0, .max = 1, .steerable = true}},
          {"delta"},
          "scheme.density = \"continuity\""});
@@ -71,11 +70,11 @@ std::vector<scene::Variant> effects() {
                     {"alpha"},
                     "scheme.density = \"continuity\""});
     list.push_back({"rest_density",
-                    "The rest density over time: lowered, the liquid becomes a gas that fills its container.",
+                    "Rest density over time: where it is lowered, the liquid becomes a gas that fills its container.",
                     {{.name = "times", .type = Type::numbers, .doc = "When.", .unit = "s", .required = true, .example = "times = [0.0]"},
                      {.name = "values",
                       .type = Type::numbers,
-                      .doc = "How much; linear in between.",
+                      .doc = "Values; linear in between.",
                       .unit = "kg/m^3",
                       .required = true,
                       .min = 0,

@@ -37,11 +37,12 @@ Options::Options(const scene::Scene& scene, real fastest) : Options() {
     if (const auto* d = scene.effect("density_diffusion")) diffusion = d->number("delta");
     if (const auto* t = scene.effect("surface_tension")) sigma = t->number("sigma");
     if (diffusion > 0 && !continuity)
-        scene.refuse("effects.density_diffusion", "a density that is summed does not diffuse", "set scheme.density = \"continuity\"");
+        scene.refuse("effects.density_diffusion", "density diffusion requires a density by its rate",
+                     "set scheme.density = \"continuity\"");
     if (continuity && particles::vapour_is_named(scene))
-        scene.refuse("heat.vapour", "a density by its rate does not follow a liquid that boils", "set scheme.density = \"summation\"");
+        scene.refuse("heat.vapour", "a boiling liquid requires a summed density", "set scheme.density = \"summation\"");
     if (sigma > 0 && !tension)
-        scene.refuse("effects.surface_tension", "the surface pulls on a liquid that cannot be pulled", "set scheme.tension = true");
+        scene.refuse("effects.surface_tension", "surface tension requires negative pressure", "set scheme.tension = true");
     if (const auto* g = scene.effect("gravity")) {
         const auto list = g->numbers("g");
         for (std::size_t a = 0; a < list.size(); ++a) gravity[a] = list[a];

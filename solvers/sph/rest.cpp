@@ -129,8 +129,8 @@ std::string start_at_rest(particles::Fluid<D>& fluid) {
         if (fluid.gravity[a] != 0) up = up < 0 ? a : D;
     if (up < 0) return {};
     if (up == D)
-        return "gravity is along no axis, so that no liquid begins with the pressure of its weight and all of it rings at first; "
-               "initial.surface = a point of its surface gives it that";
+        return "gravity is not along an axis, so no liquid starts with hydrostatic pressure, and pressure waves follow; give "
+               "initial.surface, a point of the surface";
     const int way = fluid.gravity[up] < 0 ? 1 : -1;
     Vessel<D> v = vessel_of(fluid, up, way);
     const auto& domain = fluid.domain;
@@ -151,8 +151,8 @@ std::string start_at_rest(particles::Fluid<D>& fluid) {
     for (const Pool& pool : pools)
         if (!rests(pool) && pool.has_top() && pool.high - pool.low > flat * domain.spacing)
             return fmt::format(
-                "liquid whose top is not flat (from {0} = {1:.4g} to {2:.4g} m) begins without the pressure of its weight, and "
-                "rings at first; initial.surface = a point of its surface gives it that",
+                "liquid whose top is not flat (from {0} = {1:.4g} to {2:.4g} m) starts without hydrostatic pressure, and pressure waves "
+                "follow; give initial.surface, a point of the surface",
                 "xyz"[up], way * (way > 0 ? pool.low : pool.high), way * (way > 0 ? pool.high : pool.low));
     return {};
 }

@@ -14,7 +14,7 @@ namespace weir::sph {
 template <int D>
 particles::Fluid<D> first_fluid(const scene::Scene& scene) {
     auto fluid = particles::initial_fluid<D>(scene);
-    particles::refuse_idle_walls(scene, fluid.domain, scene.effect("viscosity") != nullptr, "name effects.viscosity");
+    particles::refuse_idle_walls(scene, fluid.domain, scene.effect("viscosity") != nullptr, "add effects.viscosity");
     return fluid;
 }
 
@@ -58,8 +58,7 @@ std::string start_pressure(const scene::Scene& scene, const Options& options, pa
     std::string hint;
     if (scene.has("initial.surface")) {
         if (!options.continuity)
-            scene.refuse("initial.surface", "a density that is summed has the pressure of its particles",
-                         "set scheme.density = \"continuity\"");
+            scene.refuse("initial.surface", "initial.surface requires a density by its rate", "set scheme.density = \"continuity\"");
         const Vec<D> surface = scene.vec<D>("initial.surface");
         for (int i = 0; i < fluid.count(); ++i)
             fluid.carried[static_cast<std::size_t>(i)] = std::max<real>(0, fluid.rho0 * dot(fluid.gravity, fluid.position(i) - surface));
@@ -90,7 +89,7 @@ real tension_limit(const Options& o, const particles::Fluid<D>& fluid) {
 template <int D>
 StepLimit stable_step(const Options& o, const particles::Fluid<D>& fluid, real speed) {
     if (std::isnan(speed)) speed = fluid.max_speed();
-    return {0.5 * o.support * fluid.domain.spacing / (o.sound + speed), "sound crosses half the support in it"};
+    return {0.5 * o.support * fluid.domain.spacing / (o.sound + speed), "sound crosses half the support"};
 }
 
 /// Density changes by about the square of the Mach number: by a hundredth at 1/10, by a tenth at this one.

@@ -42,9 +42,10 @@ constexpr real unfelt = 0.1;
 void refuse_friction_of_before(const scene::Table& viscosity, const scene::Scene& scene) {
     for (const auto& body : scene.root().tables("bodies"))
         if (viscosity.text("scheme") != "implicit" && body.text("slip") == "no")
-            scene.refuse("effects.viscosity.scheme",
-                         "effects.viscosity.scheme = \"" + viscosity.text("scheme") + "\" takes friction where bodies are before the step",
-                         "with a body that has slip = \"no\": scheme = \"implicit\"");
+            scene.refuse(
+                "effects.viscosity.scheme",
+                "effects.viscosity.scheme = \"" + viscosity.text("scheme") + "\" evaluates friction at the body positions before the step",
+                "a body with slip = \"no\" requires scheme = \"implicit\"");
 }
 
 template <int D>

@@ -138,7 +138,7 @@ template <int D>
 std::string text_of(const Squeezed<D>& region) {
     std::string middle;
     for (int a = 0; a < D; ++a) middle += fmt::format("{}{:.4g}", a ? ", " : "", region.middle[a]);
-    return fmt::format("the closed room of {:.4g} {} around [{}] m {} by {:.4g} {}/s", region.volume, D == 2 ? "m^2" : "m^3", middle,
+    return fmt::format("the closed region of {:.4g} {} around [{}] m {} by {:.4g} {}/s", region.volume, D == 2 ? "m^2" : "m^3", middle,
                        region.growth < 0 ? "shrinks" : "grows", std::abs(region.growth), D == 2 ? "m^2" : "m^3");
 }
 
@@ -157,8 +157,8 @@ void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real di
     if (const real rate = solids.max_rate(s); !(rate > 0 && divergence > part * rate)) return;
     const Squeezed<D> region = find_squeezed(s, solids.solids());
     if (!region.any()) return;
-    throw NumericalFailure("volume", fmt::format("solids[{}] moves so that {}: liquid or gas that cannot be compressed has no way out",
-                                                 region.solid, text_of(region)));
+    throw NumericalFailure(
+        "volume", fmt::format("solids[{}] moves so that {}: an incompressible fluid has no outflow", region.solid, text_of(region)));
 }
 
 #define WEIR_INSTANTIATE(D)                                                             \

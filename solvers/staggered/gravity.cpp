@@ -28,6 +28,6 @@ struct Gravity final : MacEffect<D> {
 
 }  // namespace
 
-EffectKind gravity() { return effect_kind<Gravity>(scene::gravity_effect("A constant acceleration of all fluid.")); }
+EffectKind gravity() { return effect_kind<Gravity>(scene::gravity_effect("Constant acceleration of all fluid.")); }
 
 }  // namespace weir::staggered

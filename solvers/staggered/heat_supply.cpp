@@ -42,12 +42,12 @@ void HeatSupply<D>::read_side(const scene::Scene& scene, const MacState<D>& s, c
     }
     for (const char* key : {".heat_flux", ".exchange"})
         if (side.temperature && scene.has(path + key))
-            scene.refuse(path + key, "the wall has a temperature: how much heat passes follows from it");
+            scene.refuse(path + key, "the wall has a temperature, which determines the heat flux");
     if (scene.has(path + ".heat_flux")) fluxes_.push_back({a, end, scene.number(path + ".heat_flux")});
     if (!scene.has(path + ".exchange")) return;
     if (!ambient_.has_temperature())
-        scene.refuse(path + ".exchange", "the wall exchanges heat with surroundings of which nothing is said",
-                     "heat.ambient with a temperature or keyframes");
+        scene.refuse(path + ".exchange", "the wall exchanges heat with surroundings that are not defined",
+                     "add heat.ambient with a temperature or keyframes");
     conduction.exchange_through(a, end, scene.number(path + ".exchange"));
     exchanging_.push_back({a, end});
 }
@@ -68,7 +68,7 @@ template <int D>
 void HeatSupply<D>::refuse_heaters_without_fluid(const scene::Scene& scene, const MacState<D>& s) const {
     for (std::size_t i = 0; i < heaters_.size(); ++i)
         if (std::none_of(heaters_[i].cells.begin(), heaters_[i].cells.end(), [&](std::size_t c) { return s.cells[c] == Cell::fluid; }))
-            scene.refuse("heaters[" + std::to_string(i) + "]", "the heater lies inside solids: no heat leaves it");
+            scene.refuse("heaters[" + std::to_string(i) + "]", "the heater lies inside solids: it heats no fluid");
 }
 
 template <int D>

@@ -38,7 +38,7 @@ std::vector<Variant> velocity_variants() {
             {"random",
              "Solenoidal noise: the curl of random potentials on corners or edges.",
              {number("speed", "Largest potential difference over a cell size.", "m/s", 1),
-              Key{.name = "seed", .type = Type::integer, .doc = "Picks the noise.", .fallback = std::int64_t{1}}}}};
+              Key{.name = "seed", .type = Type::integer, .doc = "Seed of the noise.", .fallback = std::int64_t{1}}}}};
 }
 
 std::vector<Variant> field_variants() {

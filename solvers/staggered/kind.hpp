@@ -20,7 +20,7 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
 template <template <int> class S>
 std::unique_ptr<Solver> make_without_surface(const scene::Scene& scene) {
     if (!scene.root().tables("liquid").empty())
-        scene.refuse("liquid", "solver \"" + scene.solver() + "\" has no free surface and no use for liquid",
+        scene.refuse("liquid", "solver \"" + scene.solver() + "\" has no free surface and does not support liquid",
                      "solver \"mac_water\" has one");
     return make<S>(scene);
 }

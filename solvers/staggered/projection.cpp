@@ -16,24 +16,26 @@ scene::Key PoissonChoice::key() {
     std::vector<std::string> names;
     for (const auto& method : poisson::methods()) names.push_back(method.name);
     using scene::Type;
-    return {.name = "poisson",
-            .type = Type::table,
-            .doc = "How the pressure equation is solved.",
-            .keys = {{.name = "method", .type = Type::choice, .doc = "Solver.", .fallback = std::string("multigrid"), .choices = names},
-                     {.name = "tolerance",
-                      .type = Type::number,
-                      .doc = "Residual over right-hand side.",
-                      .fallback = 1e-8,
-                      .min = 1e-15,
-                      .max = 1,
-                      .steerable = true},
-                     {.name = "max_iterations",
-                      .type = Type::integer,
-                      .doc = "More are a failure.",
-                      .fallback = std::int64_t{1000},
-                      .min = 1,
-                      .steerable = true},
-                     {.name = "fixed", .type = Type::flag, .doc = "Run exactly max_iterations and take what comes.", .fallback = false}}};
+    return {
+        .name = "poisson",
+        .type = Type::table,
+        .doc = "Solver of the pressure equation.",
+        .keys = {
+            {.name = "method", .type = Type::choice, .doc = "Solver.", .fallback = std::string("multigrid"), .choices = names},
+            {.name = "tolerance",
+             .type = Type::number,
+             .doc = "Relative residual: residual over right-hand side.",
+             .fallback = 1e-8,
+             .min = 1e-15,
+             .max = 1,
+             .steerable = true},
+            {.name = "max_iterations",
+             .type = Type::integer,
+             .doc = "Maximum number of iterations; a solve that needs more fails.",
+             .fallback = std::int64_t{1000},
+             .min = 1,
+             .steerable = true},
+            {.name = "fixed", .type = Type::flag, .doc = "Run exactly max_iterations, without a convergence test.", .fallback = false}}};
 }
 
 template <int D>

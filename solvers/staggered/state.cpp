@@ -64,13 +64,13 @@ template <int D>
 NamedField<D>& MacState<D>::field(std::string_view name) {
     for (auto& field : fields)
         if (field.name == name) return field;
-    throw std::logic_error("no effect asked for the field \"" + std::string(name) + "\"");
+    throw std::logic_error("no effect requested the field \"" + std::string(name) + "\"");
 }
 
 template <int D>
 Grid<real, D>& MacState<D>::scratch_field(std::string_view name) {
     if (auto* field = find_in(scratch, name)) return *field;
-    throw std::logic_error("no effect asked for the scratch field \"" + std::string(name) + "\"");
+    throw std::logic_error("no effect requested the scratch field \"" + std::string(name) + "\"");
 }
 
 template <int D>

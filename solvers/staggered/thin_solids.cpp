@@ -73,8 +73,8 @@ std::vector<std::string> remarks(const scene::Scene& scene) {
         for (int d = 0; d < D; ++d)
             needed += (d ? ", " : "") + std::to_string(static_cast<int>(std::ceil(cells[d] * resolved_cells / thick - 1e-6)));
         list.push_back("solids[" + std::to_string(i) + "] is " + scene::number_text(std::round(100 * thick) / 100) +
-                       " cells thick at its thickest: it blocks, but its sides stand up to a cell beside where they are; from " +
-                       scene::number_text(resolved_cells) + " cells on they stand in their places: grid.cells = " + needed + "]");
+                       " cells thick at most: it blocks flow, but its surfaces are displaced by up to one cell; from " +
+                       scene::number_text(resolved_cells) + " cells on they are exact: grid.cells = " + needed + "]");
     }
     return list;
 }

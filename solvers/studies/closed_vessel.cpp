@@ -45,28 +45,24 @@ Key positive(const char* name, const char* doc, const char* unit) {
 std::vector<Key> ClosedVessel::keys() {
     Key substance = matter::substance_key();
     substance.doc += " Of this solver: \"water\".";
-    return {substance,
-            {.name = "heat", .type = Type::table, .doc = "The surroundings.", .keys = {matter::pressure_key(), matter::ambient_key()}},
-            {.name = "vessel",
-             .type = Type::table,
-             .doc = "A rigid vessel with water and its vapour, and nothing else.",
-             .required = true,
-             .keys = {positive("volume", "Of the vessel.", "m^3"),
-                      positive("mass", "Of the water in it, liquid and vapour.", "kg"),
-                      positive("temperature", "At the start.", "K"),
-                      {.name = "vapour",
-                       .type = Type::number,
-                       .doc = "How much of the mass is vapour at the start.",
-                       .unit = "kg",
-                       .fallback = 0.0,
-                       .min = 0},
-                      positive("transfer", "Mass that evaporates for each pascal below the saturation pressure.", "kg/(s Pa)"),
-                      {.name = "exchange",
-                       .type = Type::number,
-                       .doc = "Heat that comes in for each kelvin by which heat.ambient is warmer.",
-                       .unit = "W/K",
-                       .fallback = 0.0,
-                       .min = 0}}}};
+    return {
+        substance,
+        {.name = "heat", .type = Type::table, .doc = "The surroundings.", .keys = {matter::pressure_key(), matter::ambient_key()}},
+        {.name = "vessel",
+         .type = Type::table,
+         .doc = "A rigid vessel that contains only water and its vapour.",
+         .required = true,
+         .keys = {positive("volume", "Volume of the vessel.", "m^3"),
+                  positive("mass", "Mass of the water, liquid and vapour.", "kg"),
+                  positive("temperature", "Temperature at the start.", "K"),
+                  {.name = "vapour", .type = Type::number, .doc = "Mass of vapour at the start.", .unit = "kg", .fallback = 0.0, .min = 0},
+                  positive("transfer", "Evaporation rate per pascal below the saturation pressure.", "kg/(s Pa)"),
+                  {.name = "exchange",
+                   .type = Type::number,
+                   .doc = "Heat transfer coefficient to heat.ambient.",
+                   .unit = "W/K",
+                   .fallback = 0.0,
+                   .min = 0}}}};
 }
 
 ClosedVessel::ClosedVessel(const scene::Scene& scene)
@@ -79,18 +75,18 @@ ClosedVessel::ClosedVessel(const scene::Scene& scene)
       vapour_(scene.number("vessel.vapour")),
       T_(scene.number("vessel.temperature")) {
     if (scene.root().text("substance.name") != "water")
-        scene.refuse("substance", "the energies of liquid and vapour in balance are known of water alone", "\"water\"");
+        scene.refuse("substance", "energies of liquid and vapour in equilibrium are available for water only", "\"water\"");
     if (T_ < coldest || T_ > hottest)
         scene.refuse("vessel.temperature", "vessel.temperature is " + scene::number_text(T_) + " K",
-                     "liquid and vapour are in balance from 273.16 to 646 K");
+                     "liquid and vapour are in equilibrium from 273.16 to 646 K");
     if (vapour_ > mass_)
-        scene.refuse("vessel.vapour", "vessel.vapour is " + scene::number_text(vapour_) + " kg, more than all there is",
+        scene.refuse("vessel.vapour", "vessel.vapour is " + scene::number_text(vapour_) + " kg, more than the total mass",
                      "at most vessel.mass");
     if (exchange_ > 0 && !ambient_.has_temperature())
-        scene.refuse("vessel.exchange", "the vessel exchanges heat with surroundings of which nothing is said",
-                     "heat.ambient with a temperature or keyframes");
+        scene.refuse("vessel.exchange", "the vessel exchanges heat with surroundings that are not defined",
+                     "add heat.ambient with a temperature or keyframes");
     if (!(gas_volume(T_) > 0))
-        scene.refuse("vessel.mass", "the liquid fills the vessel: there is no room for vapour",
+        scene.refuse("vessel.mass", "the liquid fills the vessel: no volume is left for vapour",
                      "less than " + scene::number_text(std::floor(volume_ * water_at_saturation(T_).liquid_density)) + " kg");
     const Index<2> cells = scene.index<2>("grid.cells");
     const Vec<2> origin = scene.vec<2>("grid.origin"), size = scene.vec<2>("grid.size");

@@ -53,7 +53,7 @@ scene::SolverKind reconstruction_kind() {
     output.keys[0].example = "output.surface = \"zhu_bridson\"";
     scene::SolverSchema schema;
     schema.name = "reconstruction";
-    schema.doc = "Particles on a lattice that nothing moves, and the surface around them: to measure reconstructions.";
+    schema.doc = "Particles at rest on a lattice, and their surface: to measure surface reconstruction.";
     schema.dims = {2, 3};
     schema.keys = {output, ReconstructionStudy::jitter_key()};
     schema.without = {

@@ -26,7 +26,7 @@ scene::Key PhaseDiagram::samples_key() {
     const auto list = [](const char* name, const char* unit) {
         return scene::Key{.name = name,
                           .type = Type::numbers,
-                          .doc = "Of each sample.",
+                          .doc = "Temperatures of the samples.",
                           .unit = unit,
                           .fallback = std::vector<double>{},
                           .min = 0,
@@ -34,7 +34,7 @@ scene::Key PhaseDiagram::samples_key() {
     };
     return {.name = "samples",
             .type = Type::table,
-            .doc = "Temperatures and pressures, in pairs, at which all that is known of the substance is shown.",
+            .doc = "Pairs of temperature and pressure at which the properties of the substance are computed.",
             .keys = {list("temperature", "K"), list("pressure", "Pa")}};
 }
 

@@ -9,7 +9,7 @@ scene::Key PrescribedFlow<D>::key() {
     using scene::Type;
     const scene::Key period{.name = "period",
                             .type = Type::number,
-                            .doc = "After it every point is back.",
+                            .doc = "Period after which every point returns.",
                             .unit = "s",
                             .required = true,
                             .min = 0,
@@ -23,7 +23,7 @@ scene::Key PrescribedFlow<D>::key() {
     key.variants = {
         {"constant",
          "The same velocity everywhere.",
-         {{.name = "value", .type = Type::numbers, .doc = "It.", .unit = "m/s", .required = true, .length = -1}}},
+         {{.name = "value", .type = Type::numbers, .doc = "The velocity.", .unit = "m/s", .required = true, .length = -1}}},
         {"rotation",
          "Rigid rotation about `centre` (and the z axis).",
          {{.name = "centre", .type = Type::numbers, .doc = "Centre.", .unit = "m", .fallback = std::vector<double>{0.5}, .length = -1},

@@ -23,7 +23,7 @@ real noise(std::uint64_t i) {
 scene::Key ReconstructionStudy::jitter_key() {
     return {.name = "jitter",
             .type = scene::Type::number,
-            .doc = "How far at most each particle is off its place on the lattice along each axis, in spacings; the same in every run.",
+            .doc = "Maximum displacement of each particle from its lattice position along each axis, in spacings; the same in every run.",
             .fallback = 0.0,
             .min = 0,
             .max = 0.5};

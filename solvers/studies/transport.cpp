@@ -10,7 +10,7 @@ namespace {
 FieldPlan carried(const scene::Scene& scene) {
     FieldPlan plan;
     for (const auto& name : initial_fields(scene)) plan.advected(name);
-    if (plan.advected_fields().empty()) scene.refuse("initial", "there is no field to carry", "name one, such as initial.tracer");
+    if (plan.advected_fields().empty()) scene.refuse("initial", "there is no field to advect", "add one, such as initial.tracer");
     return plan;
 }
 

@@ -99,7 +99,7 @@ template <int D>
 void refuse_flat_cells(const scene::Scene& scene, const Frame<D>& frame) {
     const real ratio = frame.h_max() / frame.h_min();
     if (ratio > flattest_cell * (1 + 1e-9))
-        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " times as long as thin; water stays stable up to " +
+        scene.refuse("grid.cells", "cells are " + scene::number_text(ratio) + " in aspect ratio; water is stable up to " +
                                        scene::number_text(flattest_cell) + " times");
 }
 
@@ -107,13 +107,13 @@ template <int D>
 void refuse_no_volume(const scene::Scene& scene, const geometry::Shape<D>& liquid, const Frame<D>& frame) {
     const real inside = sum_over(frame.cells, [&](const Index<D>& I) { return liquid.contains(frame.centre(I)) ? 1.0 : 0.0; });
     if (inside > 0) scene.refuse("liquid", "all liquid lies inside solids");
-    scene.refuse("liquid", "no liquid lies in the domain, or all of it is thinner than a cell");
+    scene.refuse("liquid", "there is no liquid in the domain, or all of it is thinner than a cell");
 }
 
 scene::Variant volume_control() {
     return {"volume_control",
-            "Moves the surface, at most a fiftieth of a cell a step, so that the volume stays what was put in; the integral "
-            "\"volume_shift\" tells how far.",
+            "Corrects the volume of liquid by moving the surface, at most a fiftieth of a cell per step; the integral \"volume_shift\" "
+            "records the displacement.",
             {}};
 }
 

@@ -38,32 +38,38 @@ Key scheme_keys() {
     return scheme_key(
         {{.name = "columns",
           .type = Type::choice,
-          .doc =
-              "What lies below the regular cells of a column: one tall cell as in the paper, stacked ones whose height grows with depth, "
-              "or more regular cells (uniform: no tall cell anywhere).",
+          .doc = "Cells below the regular cells of a column: one tall cell as in the paper, stacked ones whose height grows with depth, or "
+                 "only regular cells (uniform).",
           .fallback = std::string("stacked"),
           .choices = {"stacked", "single", "uniform"}},
          {.name = "layers",
           .type = Type::integer,
-          .doc = "Rows of regular cells below the surface, at least. A single tall cell is good for waves up to four times as long.",
+          .doc = "Minimum number of rows of regular cells below the surface. A single tall cell represents waves up to four times as long.",
           .fallback = std::int64_t{8},
           .min = 8},
          {.name = "advection",
           .type = Type::choice,
-          .doc = "How velocity is carried: semi-Lagrangian with or without MacCormack's correction.",
+          .doc = "Advection of velocity: semi-Lagrangian with or without MacCormack's correction.",
           .fallback = std::string("maccormack"),
           .choices = {"maccormack", "semi_lagrangian"}},
          {.name = "poisson",
           .type = Type::table,
-          .doc = "How the pressure equation is solved: conjugate gradients with multigrid on columns.",
+          .doc = "Solver of the pressure equation: conjugate gradients with multigrid on columns.",
           .keys = {{.name = "tolerance",
                     .type = Type::number,
-                    .doc = "Residual over right-hand side.",
+                    .doc = "Relative residual: residual over right-hand side.",
                     .fallback = 1e-8,
                     .min = 1e-15,
                     .max = 1},
-                   {.name = "max_iterations", .type = Type::integer, .doc = "More are a failure.", .fallback = std::int64_t{100}, .min = 1},
-                   {.name = "fixed", .type = Type::flag, .doc = "Run exactly max_iterations and take what comes.", .fallback = false}}}});
+                   {.name = "max_iterations",
+                    .type = Type::integer,
+                    .doc = "Maximum number of iterations; a solve that needs more fails.",
+                    .fallback = std::int64_t{100},
+                    .min = 1},
+                   {.name = "fixed",
+                    .type = Type::flag,
+                    .doc = "Run exactly max_iterations, without a convergence test.",
+                    .fallback = false}}}});
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
@@ -85,16 +91,17 @@ scene::SolverKind kind() {
     schema.effects.push_back(surface::volume_control());
     schema.effects.push_back(geometry::hand_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
-    scene::SolverKind tall{schema,
-                           staggered::make<TallCells>,
-                           {{"velocity", "pressure", "level_set", "cell_height"},
-                            {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
-                            "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-                           over_ranks,
-                           scene::Shared::by_planes,
-                           [](const scene::Scene&, const Cut&) {
-                               return "the levels of the pressure of fewer than 20,000 unknowns, the level set's continuation into solids";
-                           }};
+    scene::SolverKind tall{
+        schema,
+        staggered::make<TallCells>,
+        {{"velocity", "pressure", "level_set", "cell_height"},
+         {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
+         "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+        over_ranks,
+        scene::Shared::by_planes,
+        [](const scene::Scene&, const Cut&) {
+            return "the levels of the pressure of fewer than 20,000 unknowns, extrapolation of the level set into solids";
+        }};
     tall.holds_own_part = holds_own_planes;
     tall.sends = traffic_of_step;
     tall.cut = cut_of_columns;

@@ -251,8 +251,8 @@ StepLimit TallCells<D>::stable_dt() const {
     const auto at_most = [&](real dt, std::string_view why) {
         if (dt < limit.dt) limit = {dt, why};
     };
-    if (motion > 0) at_most(cells / motion, "liquid or a body crosses in it more cells than the surface's band has");
-    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the gravity wave of two cells turns by two radians in it");
+    if (motion > 0) at_most(cells / motion, "liquid or a body crosses more cells than the narrow band contains");
+    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the phase of the gravity wave of two cells advances by two radians");
     return limit;
 }
 

@@ -61,18 +61,18 @@ void TallCells<D>::refuse_what_it_cannot(const scene::Scene& scene) const {
     constexpr real nothing = 1e-9;  // [m/s²]: no noticeable motion in any run
     if (gravity_[up_] > nothing)
         scene.refuse("effects.gravity.g",
-                     std::string("gravity pulls most towards ") + axis_name[up_] + "_max: tall cells stand on the floor at " +
-                         axis_name[up_] + "_min, under the regular ones",
-                     "gravity that points against the axis that it is most along, as g = [0, -9.81], or solver \"mac_water\"");
+                     std::string("gravity acts mostly towards ") + axis_name[up_] + "_max: tall cells require the floor at " +
+                         axis_name[up_] + "_min, below the regular cells",
+                     "set gravity in the negative direction of its main axis, as g = [0, -9.81], or use solver \"mac_water\"");
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1}) {
             const auto kind = state_.sides.side(a, end).kind;
             const std::string side = std::string("sides.") + axis_name[a] + (end == 0 ? "_min" : "_max");
             if (kind == geometry::SideKind::moving_wall)
-                scene.refuse(side, "nothing drags the liquid along here: tall cells know no friction",
+                scene.refuse(side, "tall cells have no friction: walls cannot drag the liquid",
                              "solver \"mac_water\" has the effect viscosity");
             if (kind == geometry::SideKind::inflow)
-                scene.refuse(side, "tall cells know no inflow", "solver \"mac_water\" has sides through which liquid flows in");
+                scene.refuse(side, "tall cells do not support inflow", "solver \"mac_water\" has sides through which liquid flows in");
             if (kind == geometry::SideKind::outflow && (a != up_ || end == 0))
                 scene.refuse(side, "only the side above may be open: the pressure beside a tall cell is not 0 over its height",
                              "solver \"mac_water\" has open sides everywhere");

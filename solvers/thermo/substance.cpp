@@ -56,8 +56,8 @@ real Substance::latent_heat(Boundary boundary, real T) const {
 }
 
 void Substance::check_range(const Point& at) const {
-    if (!(at.T > 0)) refuse("a temperature of " + digits(at.T) + " K", "temperatures are above 0 K");
-    if (!(at.p > 0)) refuse("a pressure of " + digits(at.p) + " Pa", "pressures are above 0 Pa");
+    if (!(at.T > 0)) refuse("a temperature of " + digits(at.T) + " K", "it must be greater than 0 K");
+    if (!(at.p > 0)) refuse("a pressure of " + digits(at.p) + " Pa", "it must be greater than 0 Pa");
     if (at.T < lowest().T)
         refuse("a temperature of " + digits(at.T) + " K",
                std::string("the formulas of ") + name() + " begin at " + digits(lowest().T) + " K");

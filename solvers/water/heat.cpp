@@ -22,12 +22,11 @@ std::vector<Key> LiquidHeat<D>::keys() {
     };
     return matter::keys_on_a_grid(
         "the liquid carry heat, freeze and evaporate",
-        {none_or_more("surface_exchange", "W/(m^2 K)",
-                      "Heat that comes in through the free surface for each kelvin by which heat.ambient is warmer."),
+        {none_or_more("surface_exchange", "W/(m^2 K)", "Heat transfer coefficient between heat.ambient and the free surface."),
          none_or_more("evaporation", "kg/(m^2 s Pa)",
-                      "Liquid that evaporates from the surface for each pascal by which its saturation pressure is above "
-                      "vapour_pressure. It goes with its heat and the heat of evaporation, and is counted."),
-         none_or_more("vapour_pressure", "Pa", "Of the substance's vapour above the liquid."), matter::ClosedGas::key()},
+                      "Evaporation rate of the surface per pascal of saturation pressure above vapour_pressure. The liquid is removed with "
+                      "its enthalpy and the heat of evaporation; the integrals record both."),
+         none_or_more("vapour_pressure", "Pa", "Pressure of the substance's vapour above the liquid."), matter::ClosedGas::key()},
         "the liquid's cells whose centres they cover; none where there is no liquid.");
 }
 
@@ -37,16 +36,15 @@ namespace {
 template <int D>
 void refuse_open(const scene::Scene& scene, const MacState<D>& s) {
     if (!scene.root().tables("emitters").empty())
-        scene.refuse("emitters[0]", "an emitter pours liquid of no temperature, and the scene names a substance that keeps its heat");
+        scene.refuse("emitters[0]", "an emitter without a temperature in a scene with a substance, whose heat is conserved");
     for (int a = 0; a < D; ++a)
         for (int end = 0; end < 2; ++end)
             if (const auto kind = s.sides.side(a, end).kind; kind == geometry::SideKind::inflow || kind == geometry::SideKind::outflow)
                 scene.refuse(std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max"),
-                             "liquid passes through an open side, and the balance of a substance's heat is for a closed box");
+                             "the heat balance of a substance requires a closed domain, and this side is open");
     for (std::size_t i = 0; scene.has("solids") && i < scene.root().tables("solids").size(); ++i)
         if (scene.root().tables("solids")[i].has("motion"))
-            scene.refuse("solids[" + std::to_string(i) + "].motion",
-                         "solids that move and a substance that melts are not simulated together");
+            scene.refuse("solids[" + std::to_string(i) + "].motion", "moving solids cannot be combined with a melting substance");
 }
 
 }  // namespace
@@ -71,13 +69,13 @@ LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame
     conduction_ = Conduction<D>(melting_, s.extent(), s.u.h, s.rho, field_boundary(s.sides, "temperature"));
     supply_ = HeatSupply<D>(scene, s, melting_, conduction_);
     if (exchange_ > 0 && !supply_.ambient().has_temperature())
-        scene.refuse("heat.surface_exchange", "the surface exchanges heat with surroundings of which nothing is said",
-                     "heat.ambient with a temperature or keyframes");
+        scene.refuse("heat.surface_exchange", "the surface exchanges heat with surroundings that are not defined",
+                     "add heat.ambient with a temperature or keyframes");
     set_initial_field(temperature_, s.u, scene, "temperature");
     const char* place = scene.has("initial.temperature") ? "initial.temperature" : "substance";
     const real coldest = -max_over(s.extent(), [&](const Index<D>& I) { return -temperature_(I); });
     if (!(coldest > 0))
-        scene.refuse(place, "somewhere it is " + scene::number_text(coldest) + " K at the start", "temperatures are above 0 K");
+        scene.refuse(place, "the lowest temperature is " + scene::number_text(coldest) + " K at the start", "it must be greater than 0 K");
     for_each_cell(s.extent(), [&](const Index<D>& I) { enthalpy_(I) = melting_.enthalpy(temperature_(I)); });
     const real most = max_over(s.extent(), [&](const Index<D>& I) { return s.cells(I) == Cell::fluid ? enthalpy_(I) : -infinity; });
     if (most > melting_.boils_above)

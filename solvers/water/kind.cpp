@@ -33,35 +33,37 @@ WaterOptions::WaterOptions(const scene::Scene& scene) {
 namespace {
 
 Key scheme_keys() {
-    return {.name = "scheme",
-            .type = Type::table,
-            .doc = "Numerical methods.",
-            .keys = {{.name = "transfer",
-                      .type = Type::choice,
-                      .doc = "How momentum travels: on the grid (semi-Lagrangian), or on markers (PIC, FLIP, APIC).",
-                      .fallback = std::string("flip"),
-                      .choices = {"grid", "pic", "flip", "apic"}},
-                     {.name = "flip_blend",
-                      .type = Type::number,
-                      .doc = "Part of FLIP in flip; the rest is PIC.",
-                      .fallback = 0.97,
-                      .min = 0,
-                      .max = 1,
-                      .steerable = true},
-                     {.name = "trace",
-                      .type = Type::choice,
-                      .doc = "Runge-Kutta scheme that moves markers.",
-                      .fallback = std::string("rk2"),
-                      .choices = {"rk1", "rk2", "rk3"}},
-                     {.name = "reseed", .type = Type::flag, .doc = "Fill holes among the markers and thin heaps.", .fallback = true},
-                     {.name = "seed", .type = Type::integer, .doc = "Of the markers' jitter.", .fallback = std::int64_t{1}, .min = 0},
-                     PoissonChoice::key()}};
+    return {
+        .name = "scheme",
+        .type = Type::table,
+        .doc = "Numerical methods.",
+        .keys = {
+            {.name = "transfer",
+             .type = Type::choice,
+             .doc = "Advection of momentum: on the grid (semi-Lagrangian), or on markers (PIC, FLIP, APIC).",
+             .fallback = std::string("flip"),
+             .choices = {"grid", "pic", "flip", "apic"}},
+            {.name = "flip_blend",
+             .type = Type::number,
+             .doc = "Fraction of FLIP in method flip; the rest is PIC.",
+             .fallback = 0.97,
+             .min = 0,
+             .max = 1,
+             .steerable = true},
+            {.name = "trace",
+             .type = Type::choice,
+             .doc = "Runge-Kutta scheme that moves markers.",
+             .fallback = std::string("rk2"),
+             .choices = {"rk1", "rk2", "rk3"}},
+            {.name = "reseed", .type = Type::flag, .doc = "Insert markers in gaps and remove them where they are dense.", .fallback = true},
+            {.name = "seed", .type = Type::integer, .doc = "Seed of the markers' jitter.", .fallback = std::int64_t{1}, .min = 0},
+            PoissonChoice::key()}};
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
 void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
-    if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "a substance melts or boils");
+    if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting and boiling of a substance are");
     scene::refuse_hand(scene);
 }
 
@@ -101,7 +103,7 @@ scene::SolverKind kind() {
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
     water.by_all = [](const scene::Scene& scene, const Cut& cut) {
-        return staggered::pressure_by_all(scene, cut) + ", the level set's continuation into solids";
+        return staggered::pressure_by_all(scene, cut) + ", extrapolation of the level set into solids";
     };
     return water;
 }

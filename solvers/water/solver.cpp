@@ -418,11 +418,11 @@ StepLimit Water<D>::stable_dt() const {
     const auto at_most = [&](real dt, std::string_view why) {
         if (dt < limit.dt) limit = {dt, why};
     };
-    if (motion > 0) at_most(cells / motion, "liquid or a body crosses two cells in it");
-    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the gravity wave of two cells turns by two radians in it");
+    if (motion > 0) at_most(cells / motion, "liquid or a body crosses two cells");
+    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the phase of the gravity wave of two cells advances by two radians");
     if (options_.sigma > 0)
         at_most(2 * std::sqrt(state_.rho * h * h * h / (pi * pi * pi * options_.sigma)),
-                "the capillary wave of two cells turns by two radians in it");
+                "the phase of the capillary wave of two cells advances by two radians");
     return limit;
 }
 

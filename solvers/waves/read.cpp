@@ -33,8 +33,8 @@ struct Reader {
     }
     void needs_gravity() const {
         if (!by.acts())
-            refuse("model", fmt::format("waves of model \"{}\" travel by gravity, and the scene names none", table.text("model")),
-                   "effects.gravity.g points down");
+            refuse("model", fmt::format("waves of model \"{}\" require gravity, and the scene has none", table.text("model")),
+                   "add effects.gravity with g downwards");
     }
     Vec<2> heading_of(const scene::Table& of, const std::string& path) const {
         const real angle = of.number("heading");
@@ -63,7 +63,7 @@ struct Reader {
 
 std::vector<Train> Reader::trains() const {
     const auto& list = table.tables("trains");
-    if (list.empty()) refuse("trains", "there is no train of waves");
+    if (list.empty()) refuse("trains", "the scene has no wave train: add waves.trains");
     std::vector<Train> made;
     for (std::size_t i = 0; i < list.size(); ++i) {
         const std::string path = fmt::format("trains[{}].", i);
@@ -98,12 +98,12 @@ Bed Reader::bed() const {
     Bed made;
     if (!table.has("bed")) return made;
     needs_gravity();
-    if (table.has("depth")) refuse("depth", "the bed says how deep the water is: one of the two is enough");
+    if (table.has("depth")) refuse("depth", "give waves.depth or waves.bed, not both");
     made.x = table.numbers("bed.x");
     made.depth = table.numbers("bed.depth");
-    if (made.x.size() < 2) refuse("bed.x", "a bed has two points and more");
+    if (made.x.size() < 2) refuse("bed.x", "a bed requires at least two points");
     if (made.x.size() != made.depth.size())
-        refuse("bed.depth", fmt::format("{} depths at {} places", made.depth.size(), made.x.size()), "one a place");
+        refuse("bed.depth", fmt::format("{} depths at {} places", made.depth.size(), made.x.size()), "one per position");
     for (std::size_t i = 0; i < made.x.size(); ++i) {
         if (i > 0 && !(made.x[i] > made.x[i - 1]))
             refuse("bed.x", fmt::format("{:g} m follows {:g} m: places increase", made.x[i], made.x[i - 1]));
@@ -127,7 +127,7 @@ std::unique_ptr<Model> Reader::gerstner() const {
             refuse("lean", fmt::format("{:g} rad a metre on an amplitude of {:g} m: from 1 rad on a crest is blown through its own trough",
                                        shape.lean, made[i].amplitude));
         if (!shape.bed.empty() && std::abs(made[i].heading[0]) < 1e-3)
-            refuse(fmt::format("trains[{}].heading", i), "a wave that travels along the shore never comes over the bed");
+            refuse(fmt::format("trains[{}].heading", i), "a wave that travels along the shore does not cross the bed");
     }
     return std::make_unique<Trochoids>(made, depth, std::move(shape), by);
 }
@@ -143,16 +143,16 @@ Spectrum Reader::spectrum() const {
     if (const real risen = pierson_moskowitz(by, depth, 1.026 * wind).peak; s.peak < risen) {
         const real longest = std::pow(22 / risen, 3) * by.g * by.g / wind;
         refuse("spectrum.fetch",
-               fmt::format("a fetch of {:.4g} km: after {:.4g} km a wind of {:g} m/s has raised the sea as far as it can",
-                           1e-3 * t.number("fetch"), 1e-3 * longest, wind),
-               "kind = \"pierson_moskowitz\" is such a sea");
+               fmt::format("a fetch of {:.4g} km: after {:.4g} km a wind of {:g} m/s has fully developed the sea", 1e-3 * t.number("fetch"),
+                           1e-3 * longest, wind),
+               "use kind = \"pierson_moskowitz\"");
     }
     return s;
 }
 
 std::unique_ptr<Model> Reader::sea() const {
     needs_gravity();
-    if (by.g == 0) refuse("model", "a wind sea travels by gravity, and the scene names none", "effects.gravity.g points down");
+    if (by.g == 0) refuse("model", "a wind sea requires gravity, and the scene has none", "add effects.gravity with g downwards");
     Sea sea{.spectrum = spectrum(),
             .heading = table.number("heading"),
             .spread = box.dim == 3 ? table.number("spread") : 0,
@@ -165,8 +165,8 @@ std::unique_ptr<Model> Reader::sea() const {
     const real x = box.nx() * box.spacing[0], z = box.dim == 3 ? box.nz() * box.spacing[2] : x, tile = std::min(x, z);
     if (peak > tile)
         scene.refuse("grid.size",
-                     fmt::format("the sea's highest waves are {:.4g} m long, and the tile that repeats is {:.4g} m wide", peak, tile),
-                     "four of them on a tile make a sea, eight a good one");
+                     fmt::format("the sea's highest waves are {:.4g} m long, and the periodic tile is {:.4g} m wide", peak, tile),
+                     "the tile must hold at least four of them; eight are recommended");
     if (peak < fewest_cells * widest_cell())
         scene.refuse("grid.cells",
                      fmt::format("the sea's highest waves are {:.4g} m long on cells of {:.4g} m: a grid shows waves of {:g} cells "
@@ -176,10 +176,9 @@ std::unique_ptr<Model> Reader::sea() const {
         refuse("depth",
                fmt::format("a sea of significant height {:.4g} m on {:.4g} m of water: most of its waves would have broken", high, depth),
                "0.78 of the depth: McCowan 1894");
-    if (sea.shortest >= peak) refuse("shortest", fmt::format("the sea's highest waves are {:.4g} m long, and would be left out", peak));
+    if (sea.shortest >= peak) refuse("shortest", fmt::format("the sea's highest waves are {:.4g} m long, and would be omitted", peak));
     if (box.ny() > 1 && sea.choppiness > 0)
-        scene.refuse("grid.cells", "a sea whose points move sideways is shown as a surface: one cell along y",
-                     "without choppiness there may be more");
+        scene.refuse("grid.cells", "a sea with horizontal displacement is a surface: use one cell along y", "or choppiness = 0");
     return std::make_unique<Ocean>(sea, box);
 }
 
@@ -252,7 +251,7 @@ std::unique_ptr<Model> Reader::basin() const {
     for (const char* key : {"level", "depth"})
         if (table.has(key)) refuse(key, fmt::format("a basin's {} is that of its liquid", key));
     const Tops<D> tops(scene, box);
-    if (tops.empty()) refuse("model", "a basin needs the liquid whose surface is let go", "liquid = [ { shape = \"wave\", ... } ]");
+    if (tops.empty()) refuse("model", "a basin requires liquid, whose surface is released", "liquid = [ { shape = \"wave\", ... } ]");
     Values heights(box.of_sheet());
     const auto row = [&](int k) { return heights.data() + static_cast<std::ptrdiff_t>(k) * box.nx(); };
     for_own_rows(box, [&](int k) {
@@ -290,8 +289,7 @@ Restoring restoring(const scene::Scene& scene) {
         real sideways = 0;
         for (std::size_t a = 0; a < g.size(); ++a)
             if (a != 1) sideways = std::max(sideways, std::abs(g[a]));
-        if (sideways > no_gravity || g[1] > no_gravity)
-            scene.refuse("effects.gravity.g", "waves travel over a level sea: gravity points down, against y");
+        if (sideways > no_gravity || g[1] > no_gravity) scene.refuse("effects.gravity.g", "waves require gravity downwards, against y");
         by.g = std::max(0.0, -g[1]);
     }
     if (const scene::Table* tension = scene.effect("surface_tension"))
@@ -313,8 +311,8 @@ std::unique_ptr<Model> make_model(const scene::Scene& scene, const Box& box) {
     const Reader read{scene, table, box, restoring(scene), table.number_or("depth", infinity)};
     const std::string& model = table.text("model");
     if (model != "basin" && scene.has("liquid") && !scene.root().tables("liquid").empty())
-        scene.refuse("liquid", "waves of model \"" + model + "\" have a level and a depth, and no use for liquid",
-                     "model \"basin\" starts from it");
+        scene.refuse("liquid", "waves of model \"" + model + "\" use level and depth, and do not support liquid",
+                     "use model \"basin\" to start from liquid");
     if (model == "sines") return read.sines();
     if (model == "gerstner") return read.gerstner();
     if (model == "spectrum") return read.sea();

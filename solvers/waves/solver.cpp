@@ -35,8 +35,8 @@ Waves::Waves(const scene::Scene& scene)
     for (int a = 0; a < box_.dim; ++a) position_[static_cast<std::size_t>(a)] = Values(box_.of_sheet());
     if (const scene::Table* foam = scene.effect("foam")) {
         if (!model_->sideways())
-            scene.refuse("effects.foam", "these waves have no foam: their points move up and down only, and such a surface does not fold",
-                         "gerstner waves, and a spectrum with choppiness, move sideways");
+            scene.refuse("effects.foam", "these waves have no foam: their points move only vertically, and the surface does not fold",
+                         "use gerstner waves or a spectrum with choppiness");
         foam_below_ = foam->number("below");
         foam_ = Values(box_.of_sheet());
     }
@@ -231,8 +231,8 @@ std::string Waves::concern() const {
     const real least = least_jacobian();
     if (least >= 0) return {};
     return fmt::format(
-        "the surface is folded over itself at t = {:.4g} s: the Jacobian of its motion falls to {:.2g}; lower the waves' "
-        "steepness or choppiness, or name effects.foam, which marks such places",
+        "the surface is folded over itself at t = {:.4g} s: the Jacobian of its motion falls to {:.2g}; lower the waves' steepness or "
+        "choppiness, or add effects.foam, which marks such places",
         time_, least);
 }
 

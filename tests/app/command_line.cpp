@@ -98,7 +98,7 @@ TEST("--explain tells what was called for, what was built and what was left out,
     EXPECT_NE(at("effects     buoyancy"), std::string::npos) << answer.text;
     EXPECT_LT(at("temperature [K]"), at("project")) << "fields, then passes";
     EXPECT_NE(at("pass \"effect confinement\"; scratch vorticity_magnitude"), std::string::npos) << answer.text;
-    EXPECT_LT(at("not called for"), at("cooling")) << answer.text;
+    EXPECT_LT(at("not requested"), at("cooling")) << answer.text;
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
@@ -119,12 +119,12 @@ effects = { gravity = { g = [0.0, -9.81] } }
         return weir_says({"run", folder.path() / "scene.toml", how, "--out", folder.path() / "out"}).text;
     };
     const std::string remark =
-        "fluid.density is not named, so it is 1 kg/m^3, as of air, and body \"raft\" of 500 kg/m^3 sinks in it; of water";
+        "fluid.density is not given; the default is 1 kg/m^3, the density of air, and body \"raft\" of 500 kg/m^3 sinks in it; for water";
     for (const char* how : {"--explain", "--quiet"}) {
         EXPECT_NE(said("", how).find(remark), std::string::npos) << said("", how);
-        EXPECT_EQ(said("fluid = { density = 1.0 }\n", how).find("is not named"), std::string::npos) << how;
+        EXPECT_EQ(said("fluid = { density = 1.0 }\n", how).find("is not given"), std::string::npos) << how;
     }
-    EXPECT_EQ(weir_says({"run", water, "--explain"}).text.find("is not named"), std::string::npos);
+    EXPECT_EQ(weir_says({"run", water, "--explain"}).text.find("is not given"), std::string::npos);
 }
 
 TEST("an effect of strength zero is remarked: it may cost, and does nothing") {
@@ -150,7 +150,7 @@ TEST("weir cost --plan tells what a scene will cost and writes nothing; weir pla
     const auto forecast = weir_says({"cost", "--plan", smoke});
     EXPECT_EQ(forecast.code, 0) << forecast.text;
     for (const char* what :
-         {"temperature [K]", "bytes a cell", "frames", " steps", "effect buoyancy", "all", "ns a cell", "rates measured now"})
+         {"temperature [K]", "bytes per cell", "frames", " steps", "effect buoyancy", "all", "ns per cell", "rates measured now"})
         EXPECT_NE(forecast.text.find(what), std::string::npos) << what << "\n" << forecast.text;
     const std::string tables = std::string(WEIR_SOURCE_DIR) + "/results/cost", study = std::string(WEIR_SOURCE_DIR) + "/cases/taylor_green";
     const auto chosen = weir_says({"plan", study, "--tables", tables, "--as-measured", "--error", "20%", "--budget", "10s"});
@@ -160,7 +160,7 @@ TEST("weir cost --plan tells what a scene will cost and writes nothing; weir pla
     EXPECT_EQ(none.code, 1) << none.text;
     EXPECT_NE(none.text.find("the nearest:"), std::string::npos) << none.text;
     EXPECT_EQ(weir_says({"plan", study, "--tables", tables, "--as-measured", "--error", "2%", "--budget", "16"}).code, 2)
-        << "a time has a unit";
+        << "a time requires a unit";
 }
 
 TEST("an output folder that cannot be written is refused before the run") {
@@ -228,7 +228,7 @@ TEST("of a sweep the run that is refused is named with why, though the claim res
            "emitters = [ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.03, smoke = 1.0 } ]\n";
     const auto answer = weir_says({"validate", one, "--out", folder.path() / "out"});
     EXPECT_EQ(answer.code, 2) << answer.text;
-    EXPECT_NE(answer.text.find("1 of 1 claims hold"), std::string::npos) << answer.text;
+    EXPECT_NE(answer.text.find("1 of 1 claims pass"), std::string::npos) << answer.text;
     const auto told = answer.text.find("thin at grid.cells = 4: refused: ");
     ASSERT_NE(told, std::string::npos) << answer.text;
     EXPECT_NE(answer.text.find("scene.toml:5:12: ", told), std::string::npos) << answer.text;

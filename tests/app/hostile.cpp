@@ -138,7 +138,7 @@ TEST("the poster of a film replaces the poster of an earlier film, and no other 
     for (const std::string name : {"holiday", "picture", "link"}) {
         const Answer answer = movie(name + ".mp4");
         EXPECT_EQ(answer.code, 2) << answer.text;
-        EXPECT_NE(answer.text.find(name + ".png: the poster of " + name + ".mp4 would replace this file"), std::string::npos)
+        EXPECT_NE(answer.text.find(name + ".png: the poster of " + name + ".mp4 would overwrite this file"), std::string::npos)
             << answer.text;
     }
     EXPECT_EQ(text_of("holiday.png"), "mine");
@@ -190,7 +190,9 @@ TEST("a run.json of any shape is refused with exit 2 by pictures, and says what 
     EXPECT_EQ(names_here(), std::vector<std::string>{"run"});
 }
 
-TEST("a run goes on in its own domain: --restart with other cells, size or origin is refused, and no frame is touched") {
+TEST(
+    "leave grid.cells, grid.size and grid.origin unchanged: --restart with other cells, size or origin is refused, and no frame is "
+    "touched") {
     TemporaryFolder folder;
     const Inside here(folder.path());
     for (const std::string solver : {"smoke", "dam"}) {
@@ -202,7 +204,7 @@ TEST("a run goes on in its own domain: --restart with other cells, size or origi
         for (const std::string& change : {size, std::string("grid.origin=[0.01, 0]")}) {
             const Answer answer = weir_says({"run", "--restart", "run", "--threads", "1", "--set", "time.end=0.04", "--set", change});
             EXPECT_EQ(answer.code, 2) << change << ": " << answer.text;
-            EXPECT_NE(answer.text.find("a run goes on in its own domain"), std::string::npos) << answer.text;
+            EXPECT_NE(answer.text.find("leave grid.cells, grid.size and grid.origin unchanged"), std::string::npos) << answer.text;
         }
         EXPECT_EQ(text_of("run/grid.pvd") + text_of("run/particles.pvd"), before);
         EXPECT_EQ(weir_says({"run", "--restart", "run", "--threads", "1", "--set", "time.end=0.04"}).code, 0);
@@ -301,8 +303,8 @@ TEST("scenes, cases and checkpoints that are pipes which no program writes to, o
     write("case/scene.toml", tiny_scene);
     ASSERT_EQ(mkfifo("case/case.toml", 0600), 0);
     for (const auto& [words, message] :
-         {std::pair{"run pipe.toml --out out", "pipe.toml: this is a pipe that no program writes to"},
-          {"validate case/ --out out", "case.toml: this is a pipe that no program writes to"},
+         {std::pair{"run pipe.toml --out out", "pipe.toml: no program writes to this pipe"},
+          {"validate case/ --out out", "case.toml: no program writes to this pipe"},
           {"run --restart pipe.toml --out out", "pipe.toml: cannot read checkpoint"},
           {"run /dev/zero --out out", "/dev/zero: this is a device or a socket; regular files and pipes are read"},
           {"run /dev/null --out out", "/dev/null: this is a device or a socket; regular files and pipes are read"}}) {

@@ -521,7 +521,7 @@ TEST("without a display, and without a scene, it says so and exits with 2") {
     const std::string display = std::getenv("DISPLAY");
     Process nothing({"live"}, folder.path() / "log");
     EXPECT_EQ(nothing.wait(), 2);
-    EXPECT_NE(nothing.said().find("needs a scene"), std::string::npos) << nothing.said();
+    EXPECT_NE(nothing.said().find("requires a scene"), std::string::npos) << nothing.said();
     unsetenv("DISPLAY");
     Process blind({"live", written(folder.path() / "scene.toml", smoke)}, folder.path() / "log");
     const int code = blind.wait();
@@ -552,7 +552,7 @@ TEST("--bench measures a scene for so long and tells what a frame spends; the re
         EXPECT_NE(bench.said().find(part), std::string::npos) << bench.said();
     Process wrong({"live", "--bench", "soon"}, folder.path() / "log");
     EXPECT_EQ(wrong.wait(), 2);
-    EXPECT_NE(wrong.said().find("--bench soon: how long, such as 10s"), std::string::npos) << wrong.said();
+    EXPECT_NE(wrong.said().find("--bench soon: expected a time with its unit, such as 10s"), std::string::npos) << wrong.said();
 }
 
 }  // namespace

@@ -86,10 +86,10 @@ told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 |
 at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
 holds_own() {
     for run; do
-        grep -q '"storage":"every rank holds its own planes and those near its cuts"' "$run/run.json" || fail "a rank of $run held more than its own planes"
+        grep -q '"storage":"every rank stores its slab and ghost planes"' "$run/run.json" || fail "a rank of $run held more than its own planes"
     done
 }
-holds_whole() { grep -q '"storage":"every rank holds whole grids"' "$1/run.json" || fail "run.json of $1 does not tell that grids are whole"; }
+holds_whole() { grep -q '"storage":"every rank stores whole grids"' "$1/run.json" || fail "run.json of $1 does not tell that grids are whole"; }
 # ends_steady RUN: the last run, and as many steps of this one, which were some
 ends_steady() {
     says "steady at t = "
@@ -192,7 +192,7 @@ case $part in
 particles)
     compare pbf "$every" "$drops"
     compare sph "$every" "$drops" $sph
-    grep -q '"count":2,"cut":"as many particles to each"' pbf-2-1/run.json || fail "run.json does not tell the ranks"
+    grep -q '"count":2,"cut":"equal numbers of particles"' pbf-2-1/run.json || fail "run.json does not tell the ranks"
     ;;
 particles_3d)
     compare pbf "$every" "$drops_deep"
@@ -244,7 +244,7 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     in_two_parts 0.06 0.07 "$one_end"
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
     ends 2 over 2 "$weir" run --restart parts --quiet --set time.end=0.08 --set grid.cells=[24,20,72]
-    says "does not fit the scene"
+    says "does not match the scene"
     # anew at checkpoints; the last one changes nothing any more. How much the velocity has changed is watched across that.
     one_end="$one_end --set time.stop_when_steady=300"
     ends 0 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out anew
@@ -730,7 +730,7 @@ petsc) # shares its rows: within the tolerance what multigrid finds in one proce
     [ "$built" -eq 0 ] || fail "PETSc's method was refused in one process"
     if [ $# -gt 4 ]; then
         ends 2 over 2 "$weir" run "$flat" --quiet --out refused --set scheme.poisson.method=petsc_icc
-        says "the ranks were started by another MPI than the one that PETSc was built with"
+        says "the ranks were started by an MPI other than the one that PETSc was built with"
         [ ! -e refused ] || fail "a refused run has written"
         exit 0
     fi
@@ -790,7 +790,7 @@ ends)
     head -c 10 parts/checkpoint.weir >broken/checkpoint.weir
     refuses_to_continue "not a checkpoint of this version"
     cp parts/checkpoint.weir broken/checkpoint.weir
-    refuses_to_continue "the checkpoint does not fit the scene" "$flat" --set grid.cells=[48,96]
+    refuses_to_continue "the checkpoint does not match the scene" "$flat" --set grid.cells=[48,96]
     # refused by name, before anything is written, by all ranks
     refused() { # KEY SCENE [--set ...]
         local key=$1
@@ -799,27 +799,27 @@ ends)
         says "$key"
         [ ! -e refused ] || fail "a refused run has written"
     }
-    refused 'solver "closed_vessel" runs in one process' "$scenes/../../../cases/closed_vessel/scene.toml"
-    refused "effects.hand: the hand pushes in one process only" "$tall" --set effects.hand={}
-    refused "effects.hand: the hand pushes in one process only" "$water" --set effects.hand={}
-    refused "effects.hand: the hand pushes in one process only" "$drops" --set effects.hand={}
-    refused "scheme.backend: this backend runs in one process only" "$drops" --set scheme.backend=reference
-    refused "floats: objects float in one process only" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
-    refused "effects.hand: the hand pushes in one process only" "$shallow" --set effects.hand={}
-    refused "effects.hand: the hand pushes in one process only" "$line" --set effects.hand={}
+    refused 'solver "closed_vessel" runs in one process only' "$scenes/../../../cases/closed_vessel/scene.toml"
+    refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$tall" --set effects.hand={}
+    refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$water" --set effects.hand={}
+    refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$drops" --set effects.hand={}
+    refused "scheme.backend: this backend is not supported in parallel (MPI); run in one process" "$drops" --set scheme.backend=reference
+    refused "floats: floating objects are not supported in parallel (MPI); run in one process" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
+    refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$shallow" --set effects.hand={}
+    refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$line" --set effects.hand={}
     # what only some ranks see of their rows all say, in the words of one process
     refused "there is liquid over air at x = 50 m" "$below" --set 'waves={model="basin"}' \
         --set 'liquid=[{shape="box",min=[0.0,-10.0,0.0],max=[80.0,0.0,88.0]},{shape="box",min=[48.0,2.0,70.0],max=[60.0,3.0,88.0]}]'
     refused "terrain.height has no value at x = 0.05, z = 3.05" "$shallow" --set 'terrain.height="sqrt(3-z)"'
-    refused "hangs above the bed at x = 2.95, z = 2.85" "$columns" --set initial={} --set 'liquid=[{shape="box",min=[2.0,0.5,2.8],max=[3.0,0.6,7.4]}]'
+    refused "this water is above air at x = 2.95, z = 2.85" "$columns" --set initial={} --set 'liquid=[{shape="box",min=[2.0,0.5,2.8],max=[3.0,0.6,7.4]}]'
     ends 0 over 3 "$weir" run "$shallow" --checkpoint-every 1000 --quiet --out rows --set time.end=0.1
     cp rows/checkpoint.weir broken/checkpoint.weir
-    refuses_to_continue "the checkpoint does not fit the scene" "$shallow" --set grid.cells=[37,1,48]
+    refuses_to_continue "the checkpoint does not match the scene" "$shallow" --set grid.cells=[37,1,48]
     refused "at most 2" "$flat" --set grid.cells=[16,2]
     refused "planes of cells" "$flat" --set grid.cells=[16,2]
     refused "unknown key" "$flat" --set grid.cell=2
     ends 2 over 2 "$weir" list solvers
-    says "only weir run goes over ranks"
+    says "only weir run works in parallel (MPI)"
     # a failure is everybody's
     ends 3 over 3 "$weir" run "$flat" --quiet --out failed --set scheme.poisson.method=cg --set scheme.poisson.max_iterations=1
     says "last good state"

@@ -105,7 +105,7 @@ TEST("a film has its poster beside it, MP4 and WebM; without ffmpeg and with ano
     Process without({"movie", drop_run(), "--out", folder.path() / "a.mp4"}, folder.path() / "log");
     setenv("PATH", path.c_str(), 1);
     EXPECT_EQ(without.wait(), 2);
-    EXPECT_NE(without.said().find("needs ffmpeg"), std::string::npos) << without.said();
+    EXPECT_NE(without.said().find("requires ffmpeg"), std::string::npos) << without.said();
     if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
     Process gif({"movie", drop_run(), "--out", folder.path() / "a.gif"}, folder.path() / "log");
     EXPECT_EQ(gif.wait(), 2);
@@ -128,7 +128,7 @@ TEST("a film of a scene is made by one command, with what --set changes of its r
     run({"movie", scene_file, "--size", "64", "--set", "time.end=0.01", "--quiet"}, "log");
     Process mixed({"movie", "out/drop", "--set", "time.end=1"}, "log2");
     EXPECT_EQ(mixed.wait(), 2);
-    EXPECT_NE(mixed.said().find("--set goes with a scene"), std::string::npos) << mixed.said();
+    EXPECT_NE(mixed.said().find("--set applies to a scene"), std::string::npos) << mixed.said();
     fs::current_path(here);
     EXPECT_TRUE(fs::exists(folder.path() / "out/drop/movie.mp4"));
     EXPECT_TRUE(fs::exists(folder.path() / "out/drop/movie.png"));
@@ -155,10 +155,10 @@ TEST("--range names both ends of the colours, or the upper one; what is no range
     EXPECT_FALSE(middle == lowest);
     EXPECT_TRUE(picture("200,400") == middle);
     EXPECT_TRUE(picture("-300,900") == middle);
-    for (const auto& [range, why] : {std::pair{"400,300", "the lower end is not below the upper one"},
+    for (const auto& [range, why] : {std::pair{"400,300", "LOW must be less than HIGH"},
                                      {"warm", "is no number"},
-                                     {"1,2,3", "is too much"},
-                                     {"-5", "the highest colour alone has a value above 0"}}) {
+                                     {"1,2,3", "has too many values"},
+                                     {"-5", "a single value, that of the highest colour, must be greater than 0"}}) {
         Process refused({"picture", folder.path() / "even", std::string("--range=") + range}, folder.path() / "log");
         EXPECT_EQ(refused.wait(), 2);
         EXPECT_NE(refused.said().find(why), std::string::npos) << refused.said();
@@ -277,7 +277,7 @@ TEST(
     const auto refused = [&](const std::vector<std::string>& arguments) {
         Process process(arguments, log);
         EXPECT_EQ(process.wait(), 2) << process.said();
-        EXPECT_NE(process.said().find("the files there are of run "), std::string::npos) << process.said();
+        EXPECT_NE(process.said().find("the files in this folder belong to run "), std::string::npos) << process.said();
     };
     refused(words(first, branch, "-4.0"));
     run({"run", "--restart", first, "--threads", "1", "--set", "time.end=0.45", "--checkpoint-every", "1"}, log);  // goes on: a later one
@@ -425,7 +425,7 @@ TEST("a finished run says how to see it; to restart it finds nothing left to do,
     const auto before = text_of(out / "run.json");
     Process second({"run", "--restart", out}, folder.path() / "log");
     EXPECT_EQ(second.wait(), 0);
-    EXPECT_NE(second.said().find("nothing is left to do"), std::string::npos) << second.said();
+    EXPECT_NE(second.said().find("the run has already reached its end"), std::string::npos) << second.said();
     EXPECT_NE(second.said().find("--set time.end="), std::string::npos) << second.said();
     EXPECT_EQ(text_of(out / "run.json"), before);
     run({"run", "--restart", out, "--threads", "1", "--set", "time.end=0.6"}, folder.path() / "log");

@@ -342,15 +342,16 @@ TEST("cost --plan --ranks prints the formula's numbers, the constants with their
     const auto scene = scene::read(folder.path() / "pool.toml", sim::schemas());
     for (int rank = 0; rank < 2; ++rank) {
         const Traffic sent = sim::kind_named("mac_water").sends(scene, {sim::shares_of(scene, 2).cut, rank, 2}, {}).all();
-        EXPECT_NE(text.find(fmt::format("{:6} messages {:>12} bytes a step", sent.messages, sent.bytes)), std::string::npos) << text;
+        EXPECT_NE(text.find(fmt::format("{:6} messages {:>12} bytes per step", sent.messages, sent.bytes)), std::string::npos) << text;
     }
-    for (const char* part : {"over 2 ranks, cut along y", "each holds the whole grids, and does alone: the levels of the pressure",
-                             "planes     0 to    15", "2 us a message and 10 GB/s as given", "1024 ranks", "weak scaling"})
+    for (const char* part :
+         {"2 ranks, partitioned along y", "each rank stores the whole grids; replicated work: the levels of the pressure",
+          "planes     0 to    15", "2 us per message and 10 GB/s as given", "1024 ranks", "weak scaling"})
         EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
     const auto [explained, explanation] = said({"run", folder.path() / "pool.toml", "--explain", "--ranks", "2"});
     EXPECT_EQ(explained, 0) << explanation;
-    EXPECT_NE(explanation.find("over 2 ranks, cut along y"), std::string::npos) << explanation;
-    EXPECT_NE(explanation.find("between two processes of this machine through its memory, measured now"), std::string::npos);
+    EXPECT_NE(explanation.find("2 ranks, partitioned along y"), std::string::npos) << explanation;
+    EXPECT_NE(explanation.find("through the shared memory of this machine, measured now"), std::string::npos);
 }
 
 TEST("what cannot run over so many ranks is refused by a plan as by the run, with the key and what is allowed") {
@@ -371,15 +372,15 @@ TEST("what cannot run over so many ranks is refused by a plan as by the run, wit
             arguments.insert(arguments.end(), more.begin(), more.end());
             refused(arguments, why);
         };
-        ask("41", {}, "40 planes of cells along y cannot be shared by 41 ranks");
+        ask("41", {}, "40 planes of cells along y cannot be partitioned over 41 ranks");
         ask("41", {}, "at most 40");
-        ask("3", {"--set", "solver=tallcell", "--set", "effects.hand={}"}, "effects.hand: the hand pushes in one process only");
-        ask("3", {"--set", "effects.hand={}"}, "effects.hand: the hand pushes in one process only");
+        ask("3", {"--set", "solver=tallcell", "--set", "effects.hand={}"},
+            "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process");
+        ask("3", {"--set", "effects.hand={}"}, "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process");
     }
-    refused({"cost", "--ranks", "2"}, "--ranks tells what a scene takes over so many ranks: it needs --plan SCENE");
-    refused({"run", file, "--ranks", "2"}, "--ranks tells what a run over so many ranks takes: it needs --explain; mpirun -n N starts one");
-    refused({"cost", "--plan", file, "--ranks", "2", "--latency", "1e-6"},
-            "--latency and --bandwidth describe one network: both are needed");
+    refused({"cost", "--ranks", "2"}, "--ranks estimates a scene in parallel (MPI): it requires --plan SCENE");
+    refused({"run", file, "--ranks", "2"}, "--ranks estimates a run in parallel (MPI): it requires --explain; mpirun -n N starts one");
+    refused({"cost", "--plan", file, "--ranks", "2", "--latency", "1e-6"}, "--latency and --bandwidth describe one network: give both");
 }
 
 TEST("the model: rounds of neighbours take one latency, those of all the logarithm of the ranks, and bytes their time") {

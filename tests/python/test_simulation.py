@@ -152,7 +152,7 @@ def test_a_stale_field_raises():
 def test_no_step_while_an_array_looks_on():
     sim = weir.Simulation(dam)
     row = np.asarray(sim["pressure"])[3]  # a slice keeps what it is a slice of
-    with pytest.raises(BufferError, match="1 array still looks at the fields"):
+    with pytest.raises(BufferError, match="1 array still references the current fields"):
         sim.step()
     assert sim.steps == 0 and row.shape == (16,)
     kept = row.copy()

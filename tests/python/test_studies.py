@@ -24,7 +24,7 @@ def test_measured_is_what_a_claim_measured():
     sim.run()
     weir.set_threads(0)
     assert sim.measured()["pressure.linf_relative"] == claim.measured and sim.measured()["ms_per_step"] > 0
-    with pytest.raises(weir.BadInput, match="nothing is measured"):
+    with pytest.raises(weir.BadInput, match="no metrics were requested"):
         weir.Simulation("hydrostatic_2d").measured()
 
 
@@ -50,7 +50,7 @@ def test_plan_names_a_setting_and_its_command(tables):
     assert weir.plan("dam_break_martin_moyce", error=0.05, tables=tables).take.method == plan.take.method
     none = weir.plan("dam_break_martin_moyce", error=1e-9, budget="1us", tables=tables)
     assert none.take is None and none.nearest
-    with pytest.raises(weir.BadInput, match="needs --error"):
+    with pytest.raises(weir.BadInput, match="requires --error"):
         weir.plan("dam_break_martin_moyce", tables=tables)
 
 

@@ -24,7 +24,8 @@ TEST_IN_2D_AND_3D("a period shorter than two supports is refused by name, and no
                                         D == 2 ? "[6, 6]" : "[6, 6, 6]", D == 2 ? "[0.75, 0.75]" : "[0.75, 0.75, 0.75]"));
         ADD_FAILURE() << "was not refused";
     } catch (const scene::BadScene& refused) {
-        EXPECT_NE(std::string(refused.what()).find("the backend opencl has no periods shorter than two supports"), std::string::npos)
+        EXPECT_NE(std::string(refused.what()).find("the backend opencl does not support periods shorter than two supports"),
+                  std::string::npos)
             << refused.what();
     }
 }

@@ -18,17 +18,17 @@ std::string in_frames(const CostPoint& p) { return fmt::format("{:.3g} ms of eac
 
 std::string priced(const CostPoint& p, Price by) {
     return by == Price::second ? fmt::format("{} ({:.3g} times real time)", in_frames(p), 1 / p.seconds_per_second)
-                               : fmt::format("{:.3g} ms a step", p.ms_per_step);
+                               : fmt::format("{:.3g} ms per step", p.ms_per_step);
 }
 
-std::string plain(const CostPoint& p) { return p.name().empty() ? "the only setting" : p.name(); }
+std::string plain(const CostPoint& p) { return p.name().empty() ? "the only configuration" : p.name(); }
 
 /// The cheapest setting that is good enough: what somebody can take.
 std::string at_good_enough(const Study& study, const Points& by_price) {
     const auto good = std::find_if(by_price.begin(), by_price.end(), [&](auto* p) { return p->error <= study.good_enough; });
     if (good == by_price.end()) {
         const auto nearest = *std::min_element(by_price.begin(), by_price.end(), [](auto* a, auto* b) { return a->error < b->error; });
-        return fmt::format("No setting reaches {} = {:g}; {} comes nearest with {:.3g}, for {}.", study.error, study.good_enough,
+        return fmt::format("No configuration reaches {} = {:g}; the nearest is {} with {:.3g}, for {}.", study.error, study.good_enough,
                            plain(*nearest), nearest->error, priced(*nearest, study.price));
     }
     return fmt::format("For {} <= {:g} take {}: {}.", study.error, study.good_enough, plain(**good), priced(**good, study.price));
@@ -48,11 +48,11 @@ std::string ranks_at_good_enough(const StudyResult& result) {
     }
     const Rank& first = ranking.reached.front();
     std::string s =
-        fmt::format("Read along each method's curve at {} = {:g}, in units of the time of {}{}: {}", study.error, study.good_enough,
-                    first.label, first.at.at_most ? " (at most its cheapest setting's)" : "", fmt::join(others, ", "));
+        fmt::format("Interpolated along each method's curve at {} = {:g}, in units of the time of {}{}: {}", study.error, study.good_enough,
+                    first.label, first.at.at_most ? " (at most that of its cheapest configuration)" : "", fmt::join(others, ", "));
     if (!alike.empty())
         s += fmt::format(
-            ". Not told apart from {}, for at its price their errors differ by less than the {:g} that the reference is known to: {}",
+            ". Not distinguishable from {}, because at its cost their errors differ by less than the reference uncertainty of {:g}: {}",
             first.label, study.known_to, fmt::join(alike, ", "));
     if (!ranking.missing.empty()) s += fmt::format(". Not reached by {}", fmt::join(ranking.missing, ", "));
     return s + ".";
@@ -62,13 +62,13 @@ std::string in_real_time(const Study& study, const Points& by_price) {
     Points fast;
     std::copy_if(by_price.begin(), by_price.end(), std::back_inserter(fast), [](auto* p) { return p->seconds_per_second <= 1; });
     if (fast.empty())
-        return fmt::format("Nothing here runs in real time; {} comes nearest with {}.", plain(*by_price.front()),
+        return fmt::format("No configuration runs in real time; the nearest is {} with {}.", plain(*by_price.front()),
                            in_frames(*by_price.front()));
     const auto best = *std::min_element(fast.begin(), fast.end(), [](auto* a, auto* b) { return a->error < b->error; });
     if (const auto as_good = std::count_if(fast.begin(), fast.end(), [&](auto* p) { return p->error <= study.known_to; }); as_good > 0)
-        return fmt::format("{} of {} settings run in real time, {} of them as near to the reference as it is known itself.", fast.size(),
+        return fmt::format("{} of {} configurations run in real time, {} of them within the reference uncertainty.", fast.size(),
                            by_price.size(), as_good);
-    return fmt::format("{} of {} settings run in real time; the most accurate of them is {}: {} = {:.3g}, for {}.", fast.size(),
+    return fmt::format("{} of {} configurations run in real time; the most accurate of them is {}: {} = {:.3g}, for {}.", fast.size(),
                        by_price.size(), plain(*best), study.error, best->error, in_frames(*best));
 }
 
@@ -78,11 +78,10 @@ std::string along_the_front(const Study& study, const Points& by_price) {
     const CostPoint &from = *front.front(), &to = *front.back();
     const bool to_the_limit = to.error <= study.known_to;
     if (front.size() < 2)
-        return fmt::format(
-            "{} is {}.", plain(from),
-            to_the_limit ? "the cheapest, and as near to the reference as it is known" : "both the cheapest and the most accurate");
-    return fmt::format("From {}, the cheapest, to {}, {}, the error falls {:.3g} times for {:.3g} times the time.", plain(from), plain(to),
-                       to_the_limit ? "as near to the reference as it is known" : "the most accurate", from.error / to.error,
+        return fmt::format("{} is {}.", plain(from),
+                           to_the_limit ? "the cheapest, and within the reference uncertainty" : "both the cheapest and the most accurate");
+    return fmt::format("From {}, the cheapest, to {}, {}, the error falls by a factor of {:.3g} for {:.3g} times the time.", plain(from),
+                       plain(to), to_the_limit ? "which is within the reference uncertainty" : "the most accurate", from.error / to.error,
                        to.price(study.price) / from.price(study.price));
 }
 
@@ -102,8 +101,8 @@ std::string that_finer_does_not_pay(const Study& study, const Points& by_price) 
     }
     if (refined < 2 || 2 * worse <= refined) return "";
     return fmt::format(
-        "A finer setting does not pay here: the dearest of {} of {} methods is no more accurate than its cheapest, at {:.2g} to "
-        "{:.2g} times the price.",
+        "Refinement does not pay off here: for {} of {} methods the most expensive configuration is no more accurate than the cheapest, at "
+        "{:.2g} to {:.2g} times the cost.",
         worse, refined, least, most);
 }
 
@@ -112,8 +111,10 @@ std::string below_what_is_known(const Study& study, const Points& by_price) {
     const auto within = [&](const CostPoint* p) { return p->error <= study.known_to; };
     const auto first = std::find_if(by_price.begin(), by_price.end(), within);
     if (first == by_price.end()) return "";
-    return fmt::format("{} of {} settings lie within {:g}, where this reference cannot rank them ({}); the cheapest of them is {}.",
-                       std::count_if(first, by_price.end(), within), by_price.size(), study.known_to, study.known_why, plain(**first));
+    return fmt::format(
+        "{} of {} configurations lie within the reference uncertainty of {:g}, where they cannot be ranked ({}); the cheapest of them is "
+        "{}.",
+        std::count_if(first, by_price.end(), within), by_price.size(), study.known_to, study.known_why, plain(**first));
 }
 
 }  // namespace
@@ -123,7 +124,7 @@ std::vector<std::string> advice(const StudyResult& result) {
     Points by_price;
     for (const CostPoint& p : result.points)
         if (!p.failure) by_price.push_back(&p);
-    if (by_price.empty()) return {"Every setting failed."};
+    if (by_price.empty()) return {"Every configuration failed."};
     std::sort(by_price.begin(), by_price.end(), [&](auto* a, auto* b) { return a->price(study.price) < b->price(study.price); });
     std::vector<std::string> sentences;
     if (study.good_enough > 0) sentences.push_back(at_good_enough(study, by_price));
@@ -134,9 +135,10 @@ std::vector<std::string> advice(const StudyResult& result) {
     if (const std::string limit = below_what_is_known(study, by_price); !limit.empty()) sentences.push_back(limit);
     const auto count = [&](auto holds) { return std::count_if(result.points.begin(), result.points.end(), holds); };
     if (const auto failed = count([](const CostPoint& p) { return p.failure && p.was_run(); }); failed > 0)
-        sentences.push_back(fmt::format("{} of {} settings failed: see the table.", failed, result.points.size()));
+        sentences.push_back(fmt::format("{} of {} configurations failed: see the table.", failed, result.points.size()));
     if (const auto missing = count([](const CostPoint& p) { return !p.was_run(); }); missing > 0)
-        sentences.push_back(fmt::format("{} of {} settings could not be run here: the table says why.", missing, result.points.size()));
+        sentences.push_back(
+            fmt::format("{} of {} configurations could not be run here: the table gives the reason.", missing, result.points.size()));
     return sentences;
 }
 

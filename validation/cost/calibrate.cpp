@@ -49,7 +49,7 @@ Calibration calibrate(const Study& study, const std::vector<CostCurve>& curves, 
         found[i] = factor_of(study, curves[i], row, solvers);
         if (found[i]) all.push_back(*found[i]);
     }
-    if (all.empty()) throw BadInput(study.name + ": no setting of this table runs here, so its milliseconds cannot be scaled");
+    if (all.empty()) throw BadInput(study.name + ": no configuration of this table runs here, so its times cannot be scaled");
     Calibration c{
         .measured = all.size(), .least = *std::min_element(all.begin(), all.end()), .most = *std::max_element(all.begin(), all.end())};
     for (const auto& f : found) c.factors.push_back(f.value_or(middle_of(all)));

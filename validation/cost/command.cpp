@@ -91,7 +91,7 @@ void publish_studies(const std::vector<json>& studies, const std::filesystem::pa
     std::string page =
         "# What accuracy costs\n\nThis page is written by `weir cost --publish`; nothing in it is typed by hand. "
         "Computing time is wall-clock time of all steps but the first, the median of the repeats.\n\n";
-    if (std::filesystem::exists(folder / "effects.md")) page += "What each effect of each solver costs: [effects.md](effects.md).\n\n";
+    if (std::filesystem::exists(folder / "effects.md")) page += "Cost of each effect of each solver: [effects.md](effects.md).\n\n";
     for (const auto& file : files)
         if (const json study = read_json(file); study.is_object()) page += cost_markdown(study);
     if (const json table = read_json(folder / "report_table.json"); table.is_object()) page += report_table_markdown(table);
@@ -99,7 +99,7 @@ void publish_studies(const std::vector<json>& studies, const std::filesystem::pa
 }
 
 int report_table_command(const CostOptions& options, const Solvers& solvers) {
-    if (options.all || !options.names.empty()) throw BadInput("weir cost --report-table takes neither names nor --all");
+    if (options.all || !options.names.empty()) throw BadInput("weir cost --report-table: leave out names and --all");
     const ReportTable table = read_report_table(case_root() / "report_table");
     output::require_writable(options.out);
     const output::FolderLock lock(options.out);

@@ -109,7 +109,7 @@ std::string effects_markdown(const std::vector<EffectCost>& list, const std::str
                                              fmt::join(c.fields, ", "), c.inside.empty() ? "" : "inside " + c.inside)
                                : fmt::format("| {} | {} | {}^{} | {} | failed: {} | | | | | |\n", c.solver, c.dim, c.cells, c.dim, c.effect,
                                              c.failure.substr(0, c.failure.find('\n')));
-    return s + "\nEvery number: [effects.csv](effects.csv). " + machine + "\n";
+    return s + "\nAll values: [effects.csv](effects.csv). " + machine + "\n";
 }
 
 int effects_command(const EffectCostOptions& options, const std::vector<std::filesystem::path>& folders, bool quiet) {
@@ -120,7 +120,7 @@ int effects_command(const EffectCostOptions& options, const std::vector<std::fil
         if (talk) std::fprintf(stderr, "\r\033[K%s", what.c_str());
     });
     if (talk) std::fprintf(stderr, "\r\033[K");
-    if (list.empty()) throw BadInput("no solver with effects is called " + options.solver);
+    if (list.empty()) throw BadInput("there is no solver with effects named " + options.solver);
     fmt::print("{:10} {:3} {:21} {:>10} {:>10} {:>7} {:>7} {:>9}  {}\n", "solver", "dim", "effect", "ms without", "ms with", "ratio",
                "spread", "+kB", "fields");
     for (const EffectCost& c : list)

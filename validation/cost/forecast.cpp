@@ -91,7 +91,7 @@ std::vector<Rates> measure_copies(const scene::Scene& scene, double units, const
     for (const double n : scene.root().numbers("grid.cells")) cells *= n;
     for (const double share : {1.0, 0.25})
         measure_copy(sim::small_copy(scene, kinds, share * largest * cells / units, sim::Copy::similar), kinds, list);
-    if (list.empty()) throw NumericalFailure("time", "no small copy of this scene makes a step, so that none can be measured");
+    if (list.empty()) throw NumericalFailure("time", "no coarser copy of this scene completes a step, so no time per step can be measured");
     return list;
 }
 
@@ -174,7 +174,7 @@ std::string steps_text(const Forecast& f, const scene::Scene& scene) {
     const auto steps = [&](double dt) { return std::ceil(end / std::min(dt, longest) * (1 - 1e-9)); };
     const bool fixed = scene.has("time.dt");
     const double few = fixed ? steps(scene.number("time.dt")) : steps(f.most_dt), many = fixed ? few : steps(f.least_dt);
-    const std::string heading = "the whole scene, if it went on as it begins\n";
+    const std::string heading = "the whole scene, extrapolated from its first steps\n";
     const double seconds = 1e-3 * f.ms;
     if (few == many) return heading + fmt::format("  {:.0f} steps, {:.3g} s of computing\n", few, few * seconds);
     return heading + fmt::format("  {:.0f} to {:.0f} steps, {:.3g} to {:.3g} s of computing\n", few, many, few * seconds, many * seconds);
@@ -192,19 +192,20 @@ std::string forecast_text(const Forecast& f, const scene::Scene& scene) {
     for (const sim::ForetoldField& field : f.held.fields)
         s += fmt::format("  {:22} {:9} {:>10}\n", field.unit.empty() ? field.name : field.name + " [" + field.unit + "]",
                          places[static_cast<std::size_t>(field.where)], megabytes(field.values * sizeof(real)));
-    s += fmt::format("memory\n  {} after its first step, {:.1f} bytes a {}{}\n", megabytes(f.held.bytes), f.held.bytes / f.count, unit,
-                     f.held.exact ? ", as it is built; lists grow with what moves" : ", within a tenth, from small copies of the scene");
-    s += fmt::format("  {} of a run that writes frames\n", megabytes(sim::bytes_of_run(scene, f.held, true)));
+    s += fmt::format(
+        "memory\n  {} after its first step, {:.1f} bytes per {}{}\n", megabytes(f.held.bytes), f.held.bytes / f.count, unit,
+        f.held.exact ? ", as allocated; lists of moving particles may grow" : ", estimated within 10% from coarser copies of the scene");
+    s += fmt::format("  {} for a run that writes frames\n", megabytes(sim::bytes_of_run(scene, f.held, true)));
     s += fmt::format("frames\n  {:.0f} of {}, {} without compression\neffects\n", f.output.frames, megabytes(f.output.bytes_of_frame),
                      megabytes(f.output.bytes()));
     for (const EffectPlan& e : f.held.effects)
         s += fmt::format("  {:22} {}\n", e.name, e.pass.empty() ? "a term of \"" + e.inside + "\"" : "\"" + e.pass + "\"");
     if (f.held.effects.empty()) s += "  none\n";
-    s += fmt::format("a step, {} thread(s)\n", threads());
+    s += fmt::format("time per step, {} thread(s)\n", threads());
     for (const Pass& p : f.passes)
         if (p.seconds > 0)
-            s += fmt::format("  {:22} {:9.3f} ms  {:8.2f} ns a {}\n", p.name, 1e3 * p.seconds, 1e9 * p.seconds / f.count, unit);
-    s += fmt::format("  {:22} {:9.3f} ms  {:8.2f} ns a {}\n", "all", f.ms, 1e6 * f.ms / f.count, unit);
+            s += fmt::format("  {:22} {:9.3f} ms  {:8.2f} ns per {}\n", p.name, 1e3 * p.seconds, 1e9 * p.seconds / f.count, unit);
+    s += fmt::format("  {:22} {:9.3f} ms  {:8.2f} ns per {}\n", "all", f.ms, 1e6 * f.ms / f.count, unit);
     s += steps_text(f, scene);
     s += "rates measured now, in the first steps of";
     for (const Rates& r : f.measured) s += fmt::format("{} {} cells ({:.3g} ms)", &r == &f.measured.front() ? "" : " and", r.cells, r.ms);

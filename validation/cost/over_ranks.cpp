@@ -111,12 +111,12 @@ std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector
 
 Link measure_link() {
     void* shared = mmap(nullptr, sizeof(Meeting), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared == MAP_FAILED) throw OutputError("no memory to measure messages in");
+    if (shared == MAP_FAILED) throw OutputError("cannot measure the message latency: no shared memory");
     auto& meeting = *new (shared) Meeting;
     const pid_t other = fork();
-    if (other < 0) throw OutputError("no second process to measure messages with");
+    if (other < 0) throw OutputError("cannot measure the message latency: no second process could be started");
     if (other == 0) answer(meeting);
-    Link link{infinity, 0, "between two processes of this machine through its memory, measured now"};
+    Link link{infinity, 0, "through the shared memory of this machine, measured now"};
     std::vector<unsigned char> sent(large_message, 1);
     for (int i = 0; i < tries; ++i) {
         double start = now();
@@ -176,50 +176,53 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
 namespace {
 
 std::string constants_text(const OverRanks& o, const Forecast& f) {
-    return fmt::format("  constants: {:.3g} ns a {} and step, of the rates above; {:.3g} us a message and {:.3g} GB/s {}\n",
+    return fmt::format("  constants: {:.3g} ns per {} and step, from the rates above; {:.3g} us per message and {:.3g} GB/s {}\n",
                        1e9 * o.seconds_each, f.particles ? "particle" : "cell", 1e6 * o.link.latency, 1e-9 * o.link.bandwidth,
                        o.link.source);
 }
 
 std::string weak_text(const OverRanks& o, const Forecast& f) {
-    std::string s = f.particles ? "weak scaling, as many particles a rank as here: a model\n"
-                                : "weak scaling, as many planes a rank as here: a model\n";
+    std::string s = f.particles ? "weak scaling, a model with the same number of particles per rank\n"
+                                : "weak scaling, a model with the same number of planes per rank\n";
     for (const ModelStep& step : o.weak)
-        s += fmt::format("  {:5} ranks  {:10.4g} ms computing  {:10.4g} ms sending  {:5.1f}%\n", step.ranks, 1e3 * step.computing,
+        s += fmt::format("  {:5} ranks  {:10.4g} ms computing  {:10.4g} ms communication  {:5.1f}%\n", step.ranks, 1e3 * step.computing,
                          1e3 * step.sending, 100 * step.efficiency());
     s += constants_text(o, f);
-    if (!o.by_all.empty()) s += "  what every rank does alone is taken as shared: in truth it is less\n";
+    if (!o.by_all.empty()) s += "  replicated work is counted as distributed: the true efficiency is lower\n";
     return s;
 }
 
 }  // namespace
 
 std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::Scene& scene) {
-    if (o.ranks == 1) return "over 1 rank: nothing is cut, nothing is sent\n";
+    if (o.ranks == 1) return "1 rank: no partition, no messages\n";
     const bool planes = !o.cut.empty();
-    std::string s = o.nothing_shared ? fmt::format("over {} ranks, each with everything: there is nothing to cut\n", o.ranks)
-                                     : fmt::format("over {} ranks, cut along {}, {}\n", o.ranks, scene.dim() == 2 ? "y" : "z",
-                                                   planes ? "each with its planes" : "as many particles to each");
-    s += fmt::format("  each holds {}{}{}\n",
+    std::string s =
+        o.nothing_shared
+            ? fmt::format("{} ranks: the domain cannot be partitioned, every rank computes all of it (replicated work)\n", o.ranks)
+            : fmt::format("{} ranks, partitioned along {}, {}\n", o.ranks, scene.dim() == 2 ? "y" : "z",
+                          planes ? "one slab per rank" : "the same number of particles per rank");
+    s += fmt::format("  each rank stores {}{}{}\n",
                      !o.own_part ? "the whole grids"
-                     : planes    ? "its own planes and those near its cuts"
-                                 : "its own particles and those near its cuts",
-                     o.by_all.empty() ? "" : ", and does alone: ", o.by_all);
+                     : planes    ? "its slab and ghost planes"
+                                 : "its own and ghost particles",
+                     o.by_all.empty() ? "" : "; replicated work: ", o.by_all);
     for (std::size_t rank = 0; rank < o.bytes.size(); ++rank) {
         const int r = static_cast<int>(rank);
         if (o.ranks > most_listed && r != 0 && r != o.ranks / 2 && r + 1 != o.ranks) continue;  // those at the ends, and one between
         s += fmt::format("  rank {:4}", r);
         if (planes) s += fmt::format("  planes {:5} to {:5}", o.cut.begin(r), o.cut.end(r, o.cut.planes()) - 1);
         s += fmt::format("  {:>10.4g} MB", o.bytes[rank] / 1e6);
-        if (o.surface_bytes[rank] > 0) s += fmt::format(", {:.4g} MB more for a surface", o.surface_bytes[rank] / 1e6);
-        if (!o.sent.empty()) s += fmt::format("  {:6} messages {:>12} bytes a step", o.sent[rank].all().messages, o.sent[rank].all().bytes);
+        if (o.surface_bytes[rank] > 0) s += fmt::format(", {:.4g} MB additional for surface reconstruction", o.surface_bytes[rank] / 1e6);
+        if (!o.sent.empty())
+            s += fmt::format("  {:6} messages {:>12} bytes per step", o.sent[rank].all().messages, o.sent[rank].all().bytes);
         s += "\n";
     }
-    if (o.sent.empty()) return s + "  what is sent has no formula\n";
-    s += fmt::format("  in a step of {} iteration(s) in which nothing crosses more than {} cell(s)\n", o.shape.iterations,
+    if (o.sent.empty()) return s + "  no estimate of the messages of this solver\n";
+    s += fmt::format("  for a step of {} iteration(s) in which motion crosses at most {} cell(s)\n", o.shape.iterations,
                      o.shape.cells_crossed);
     if (const auto& besides = o.sent[0].besides; !besides.empty())
-        s += fmt::format("  not counted: what these send: {}\n", fmt::join(besides, ", "));
+        s += fmt::format("  not counted: messages of {}\n", fmt::join(besides, ", "));
     return o.nothing_shared ? s : s + weak_text(o, f);
 }
 

@@ -31,19 +31,19 @@ std::string shell_word(const std::string& text) {
 
 std::string setting_text(const Choice& c, const Study& study) {
     const Variant* method = method_of(study, *c.curve);
-    if (!method || !method->sweep) return c.curve->method.empty() ? "the only setting" : c.curve->method;
+    if (!method || !method->sweep) return c.curve->method.empty() ? "the only configuration" : c.curve->method;
     const std::string& key = method->sweep->key;
     std::string also;
-    for (const auto& follower : method->sweep->also) also += fmt::format(" ({} goes with it)", follower.key);
+    for (const auto& follower : method->sweep->also) also += fmt::format(" ({} varies with it)", follower.key);
     return fmt::format("{}{}{} = {:g}{}{}", c.curve->method, c.curve->method.empty() ? "" : ", ", key, c.at.setting,
                        key == "grid.cells" ? fmt::format(" along {}", "xyz"[method->sweep->axis]) : "", also);
 }
 
 std::string priced_text(const Choice& c, const Study& study) {
     const bool by_step = study.price == Price::step;
-    const std::string step = fmt::format("{:.3g} ms a step", c.at.ms_per_step);
+    const std::string step = fmt::format("{:.3g} ms per step", c.at.ms_per_step);
     return fmt::format("{}: {} {:.4g}, {}, {} thread{}", setting_text(c, study), study.error, c.at.error,
-                       by_step ? step : fmt::format("{:.3g} ms a frame ({})", 1e3 * c.seconds, step), c.at.threads,
+                       by_step ? step : fmt::format("{:.3g} ms per frame ({})", 1e3 * c.seconds, step), c.at.threads,
                        c.at.threads == 1 ? "" : "s");
 }
 
@@ -63,26 +63,25 @@ struct PricedHere {
 };
 PricedHere priced_here(const PlanOptions& options, const Study& study, std::vector<CostCurve> curves, const Solvers& solvers) {
     const nlohmann::json about = about_table(options, study.name);
-    const std::string there = about.value("machine", "a machine that the table does not name"), here = output::this_machine().processor;
+    const std::string there = about.value("machine", "an unnamed machine"), here = output::this_machine().processor;
     std::string words = fmt::format("measured on {}, commit {}", there, about.value("commit", "unknown"));
     if (there.find(here) != std::string::npos) return {std::move(curves), words + "\n"};
-    if (options.as_measured) return {std::move(curves), words + fmt::format("; the milliseconds are not from here ({})\n", here)};
+    if (options.as_measured) return {std::move(curves), words + fmt::format("; the times were not measured on this machine ({})\n", here)};
     const Calibration c = calibrate(study, curves, solvers);
-    words +=
-        fmt::format("; this machine is {}\nits milliseconds are scaled by {:.2g} to {:.2g}: {} of {} methods run here again, in {:.2g} s\n",
-                    here, c.least, c.most, c.measured, curves.size(), c.seconds);
+    words += fmt::format("; this machine is {}\ntimes scaled by {:.2g} to {:.2g}: {} of {} methods measured again here, in {:.2g} s\n",
+                         here, c.least, c.most, c.measured, curves.size(), c.seconds);
     return {scaled(std::move(curves), c), words};
 }
 
 std::string asked_text(const Study& study, const Budget& budget) {
     const std::string of = study.price == Price::step ? "step" : fmt::format("frame of {:.3g} ms", 1e3 * budget.frame);
     const std::string error =
-        budget.error < infinity ? fmt::format("{} at most {:g}", study.error, budget.error) : fmt::format("the least {}", study.error);
+        budget.error < infinity ? fmt::format("{} at most {:g}", study.error, budget.error) : fmt::format("the smallest {}", study.error);
     std::string text = fmt::format("{}: {}", study.name, error);
-    text +=
-        budget.seconds < infinity ? fmt::format(" for {:g} ms of computing a {}\n", 1e3 * budget.seconds, of) : ", as cheap as can be\n";
+    text += budget.seconds < infinity ? fmt::format(" within {:g} ms of computing per {}\n", 1e3 * budget.seconds, of)
+                                      : ", at the lowest cost\n";
     if (budget.known_to > 0 && (budget.error < budget.known_to || budget.error == infinity))
-        text += fmt::format("the reference is known to {:g}: smaller errors cannot be told apart ({})\n", budget.known_to, study.known_why);
+        text += fmt::format("reference uncertainty {:g}: smaller errors cannot be distinguished ({})\n", budget.known_to, study.known_why);
     return text;
 }
 
@@ -111,7 +110,7 @@ Plan make_plan(const PlanOptions& asked, const Solvers& solvers) {
     PlanOptions options = asked;
     if (options.tables.empty()) options.tables = published("cost");
     if (options.error.empty() && options.budget.empty())
-        throw BadInput("weir plan needs --error, how wrong the result may be (2%), or --budget, what a frame may cost (16ms), or both");
+        throw BadInput("weir plan requires --error, the largest error (2%), or --budget, the computing time per frame (16ms), or both");
     const auto folder = find_case(options.name);
     Plan plan;
     plan.study = read_study(folder, size_of_table(folder.filename().string(), options.tables));
@@ -132,10 +131,10 @@ int plan_command(const PlanOptions& options, const Solvers& solvers) {
     if (r.take) {
         show("take ", *r.take);
     } else {
-        fmt::print("no setting of the table reaches it; the nearest:\n");
+        fmt::print("no configuration of the table meets the request; the nearest:\n");
         for (const Choice& c : r.nearest) show("", c);
     }
-    if (r.between) fmt::print("perhaps {}: read between two settings, not measured\n", priced_text(*r.between, plan.study));
+    if (r.between) fmt::print("estimate: {}: interpolated between two configurations, not measured\n", priced_text(*r.between, plan.study));
     fmt::print("{}", plan.prices);
     return r.take ? exit_success : exit_claim_failed;
 }

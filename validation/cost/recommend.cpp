@@ -90,13 +90,14 @@ double parse_seconds(const std::string& text) {
     static const std::map<std::string, double> units{{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}};
     const auto [value, unit] = number_and_unit(text, "budget");
     const auto found = units.find(unit);
-    if (found == units.end()) throw BadInput(fmt::format("--budget {}: a time has a unit, us, ms or s", text));
+    if (found == units.end()) throw BadInput(fmt::format("--budget {}: a time requires a unit: us, ms or s", text));
     return value * found->second;
 }
 
 real parse_error(const std::string& text) {
     const auto [value, unit] = number_and_unit(text, "error");
-    if (unit != "%" && !unit.empty()) throw BadInput(fmt::format("--error {}: a number, or per cent", text));
+    if (unit != "%" && !unit.empty())
+        throw BadInput(fmt::format("--error {}: expected a number or a percentage, such as 0.02 or 2%", text));
     return unit.empty() ? value : value / 100;
 }
 
@@ -176,7 +177,7 @@ std::vector<CostCurve> read_cost_table(const Study& study, const std::filesystem
                                  .threads = std::stoi(cell("threads")),
                                  .index = index});
     }
-    if (curves.empty()) throw BadInput(file.string() + ": no setting in this table can be run here");
+    if (curves.empty()) throw BadInput(file.string() + ": no configuration of this table can be run here");
     for (CostCurve& c : curves)
         std::sort(c.points.begin(), c.points.end(), [](const Priced& a, const Priced& b) { return a.setting < b.setting; });
     return curves;

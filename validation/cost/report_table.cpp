@@ -28,15 +28,15 @@ std::vector<Key> table_keys() {
         return Key{.name = std::move(name), .type = Type::text, .doc = std::move(doc), .required = true};
     };
     std::vector<Key> row = variant_keys();
-    for (Key k : {text("what", "The problem."), text("theirs", "The report's figure, as it says it."),
+    for (Key k : {text("what", "The problem."), text("theirs", "The value as quoted in the report."),
                   Key{.name = "value", .type = Type::number, .doc = "The number in it.", .required = true, .min = 0, .min_open = true},
                   text("on", "CPU or GPU."),
-                  Key{.name = "passes", .type = Type::texts, .doc = "Milliseconds of these passes; absent: frames a second."}})
+                  Key{.name = "passes", .type = Type::texts, .doc = "Milliseconds of these passes; absent: frames per second."}})
         row.push_back(std::move(k));
-    return {text("question", "What the table asks."),
-            text("their_machine", "What the report ran on."),
-            text("reading", "How the figures are made comparable."),
-            {.name = "rows", .type = Type::tables, .doc = "One a figure.", .required = true, .keys = row}};
+    return {text("question", "Question of the table."),
+            text("their_machine", "Machine of the report."),
+            text("reading", "How the values are made comparable."),
+            {.name = "rows", .type = Type::tables, .doc = "One entry per value.", .required = true, .keys = row}};
 }
 
 /// Milliseconds a step of the row's passes, or of everything.

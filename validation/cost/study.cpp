@@ -15,27 +15,27 @@ using scene::Type;
 
 std::vector<Key> keys_of_studies() {
     std::vector<Key> method = variant_keys();
-    method.insert(method.begin(), {.name = "name", .type = Type::text, .doc = "Its name in tables and figures.", .required = true});
+    method.insert(method.begin(), {.name = "name", .type = Type::text, .doc = "Its name in tables and plots.", .required = true});
     method.insert(method.begin() + 1,
                   {.name = "size", .type = Type::choice, .doc = "Run only at this size; absent: at both.", .choices = {"ci", "full"}});
     method.insert(method.begin() + 2,
                   {.name = "threads", .type = Type::integer, .doc = "Its own number of threads; 0: all that the machine has.", .min = 0});
     std::vector<Key> keys = {
-        {.name = "question", .type = Type::text, .doc = "What the study asks.", .required = true},
+        {.name = "question", .type = Type::text, .doc = "Question of the study.", .required = true},
         {.name = "error", .type = Type::text, .doc = "The metric that is the error.", .required = true},
         {.name = "also", .type = Type::texts, .doc = "Further metrics for the table."},
         {.name = "good_enough", .type = Type::number, .doc = "The error at which methods are compared.", .min = 0, .min_open = true},
-        {.name = "why", .type = Type::text, .doc = "Where that error comes from."},
-        {.name = "known_to", .type = Type::number, .doc = "How well the reference itself is known.", .min = 0, .min_open = true},
-        {.name = "known_why", .type = Type::text, .doc = "Where that comes from."},
+        {.name = "why", .type = Type::text, .doc = "Rationale of that error."},
+        {.name = "known_to", .type = Type::number, .doc = "Uncertainty of the reference.", .min = 0, .min_open = true},
+        {.name = "known_why", .type = Type::text, .doc = "Rationale."},
         {.name = "diverged_above", .type = Type::number, .doc = "An error beyond which a run has diverged.", .min = 0, .min_open = true},
-        {.name = "diverged_why", .type = Type::text, .doc = "Where that comes from."},
+        {.name = "diverged_why", .type = Type::text, .doc = "Rationale."},
         {.name = "price",
          .type = Type::choice,
-         .doc = "Time is counted for a simulated second, or for a step.",
+         .doc = "Cost per simulated second, or per step.",
          .fallback = "second",
          .choices = {"second", "step"}},
-        {.name = "methods", .type = Type::tables, .doc = "What is compared; what the study says holds for all.", .keys = method},
+        {.name = "methods", .type = Type::tables, .doc = "The methods compared; keys of the study apply to all.", .keys = method},
         {.name = "over",
          .type = Type::table,
          .doc = "One method for each value of a key of the scene, named by the value.",
@@ -56,7 +56,7 @@ Study study_of(const Case& c) {
             const bool known = claim.metric == study.error || std::count(study.also.begin(), study.also.end(), claim.metric) > 0;
             if (!known) study.also.push_back(claim.metric);
         }
-    if (study.error.empty()) throw BadInput(c.name + ": the case measures nothing that could be weighed against time");
+    if (study.error.empty()) throw BadInput(c.name + ": the case measures no error that could be compared with computing time");
     return study;
 }
 
@@ -87,7 +87,8 @@ Study parse_study(std::string_view text, const std::string& file, const std::fil
         if (root.has(bound) && root.text_or(why, "").empty())
             reader.problem(root.place(bound), fmt::format("\"{}\" needs a \"{}\"", bound, why));
     if (study.good_enough > 0 && study.good_enough < study.known_to)
-        reader.problem(root.place("good_enough"), "\"good_enough\" is below \"known_to\": nobody could tell");
+        reader.problem(root.place("good_enough"),
+                       "\"good_enough\" is below \"known_to\", the uncertainty of the reference: raise good_enough");
     study.methods = reader.read(root, "methods", [](Variant& v, const scene::Table& t) {
         if (t.has("threads")) v.threads = static_cast<int>(t.integer("threads"));
     });

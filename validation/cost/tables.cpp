@@ -64,8 +64,8 @@ std::vector<std::string> notes(const StudyResult& result) {
                 p.threads, p.threads == 1 ? "" : "s"));
     }
     if (const auto mixed = methods_where(result, [&](const CostPoint& q) { return on_processor(q) && !one_number(q); }); !mixed.empty())
-        list.push_back(fmt::format("{}: settings with little work take fewer threads (column threads).", mixed));
-    list.push_back(result.source.empty() ? "Compared with no reference: the error is one that every run shows of itself."
+        list.push_back(fmt::format("{}: configurations with little work use fewer threads (column threads).", mixed));
+    list.push_back(result.source.empty() ? "No reference: the error is computed from each run itself."
                                          : fmt::format("Compared with: {}.", result.source));
     return list;
 }
@@ -84,7 +84,7 @@ std::string cost_table(const StudyResult& result) {
                                       p->ms_per_step, megabytes(p->bytes), p->steps, 100 * p->spread,
                                       p->others > busy ? fmt::format("  others used {:.1f} cores", p->others) : "");
     }
-    s += "    * nothing else is both cheaper and more accurate\n";
+    s += "    * on the Pareto front: no other configuration is both cheaper and more accurate\n";
     for (const std::string& sentence : advice(result)) s += "  " + sentence + "\n";
     for (const std::string& note : notes(result)) s += "  (" + note + ")\n";
     return s;
@@ -186,12 +186,12 @@ std::string cost_markdown(const json& study) {
     const auto also = study.value("also", std::vector<std::string>{});
     std::string further, rule;
     for (const std::string& metric : also) further += metric + " | ", rule += "---|";
-    s += fmt::format("\n| setting | {} | s per simulated s | ms a step | MB | steps | {}|\n|---|---|---|---|---|---|{}---|\n",
+    s += fmt::format("\n| configuration | {} | s per simulated s | ms per step | MB | steps | {}|\n|---|---|---|---|---|---|{}---|\n",
                      study["error"].get<std::string>(), further, rule);
     for (const auto& p : study["points"]) s += markdown_row(p, also);
     s += "\n";
     for (const auto& note : study.value("notes", json::array())) s += note.get<std::string>() + " ";
-    s += fmt::format("Every number: [csv/{}.csv](csv/{}.csv). {} thread(s), {} size, commit {}, on {}.\n\n", name, name,
+    s += fmt::format("All values: [csv/{}.csv](csv/{}.csv). {} thread(s), {} size, commit {}, on {}.\n\n", name, name,
                      study["threads"].get<int>(), study["size"].get<std::string>(), study.value("commit", "unknown"),
                      study.value("machine", "unknown"));
     return s;

@@ -36,7 +36,7 @@ public:
             check(v, c.kind);
             c.variants.push_back(v);
         }
-        if (claims_ == 0) problem(root.place("kind"), "the case claims nothing: no [[accept]] entry in it or its variants");
+        if (claims_ == 0) problem(root.place("kind"), "the case makes no claim: add an [[accept]] entry to it or its variants");
         if (!variants_.problems().empty()) throw scene::BadScene(variants_.problems(), source_);
         return c;
     }
@@ -96,7 +96,7 @@ private:
                 break;
             case Test::never_increases:
             case Test::never_decreases:
-                if (!t.flag(key)) problem(t.place(key), fmt::format("\"{} = false\" claims nothing", key));
+                if (!t.flag(key)) problem(t.place(key), fmt::format("\"{} = false\" makes no claim", key));
                 c.high = t.number_or("slack", round_off_slack);
                 break;
         }
@@ -114,7 +114,7 @@ private:
                 problem(c.place, "a grid convergence index needs three grids, or two and a \"formal_order\"");
             if (!c.at) continue;
             if (!v.sweep)
-                problem(c.place, "\"at\" speaks of a sweep value, and there is no sweep");
+                problem(c.place, "\"at\" names a sweep value, but the case has no sweep");
             else if (std::find(v.sweep->values.begin(), v.sweep->values.end(), *c.at) == v.sweep->values.end())
                 problem(c.place, fmt::format("at = {} is no value of the sweep at {} size", *c.at, name(variants_.size())),
                         fmt::format("values: {}", fmt::join(v.sweep->values, ", ")));

@@ -42,10 +42,11 @@ Key sweep() {
 
 Key accept() {
     return tables(
-        "accept", "What is claimed: a metric, one test, and the reason for the bound.",
+        "accept", "A claim: a metric, one test, and the rationale of the bound.",
         {text("metric", "What is measured.", true),
-         text("why", "Where the bound comes from.", true),
-         text("not_reached", "Why this bound, which is asked for, is not met: it is listed and not claimed, and an error once it is met."),
+         text("why", "Rationale of the bound.", true),
+         text("not_reached",
+              "Reason why this bound, an open target, is not met: it is listed and not claimed, and an error once it is met."),
          number("at_most", "Measured <= this."),
          number("at_least", "Measured >= this."),
          pair("within", "low <= measured <= high."),
@@ -54,12 +55,12 @@ Key accept() {
          number("order_at_least", "Observed order at the finest grids."),
          pair("order_within", "low <= observed order <= high."),
          positive("gci_at_most", "Grid convergence index of the finest grids, relative (0.01: one per cent)."),
-         positive("formal_order", "Order taken on trust by gci_at_most on two grids."),
+         positive("formal_order", "Formal order assumed by gci_at_most on two grids."),
          flag("never_increases", "The series never rises over the run, beyond `slack`."),
          flag("never_decreases", "The series never falls over the run, beyond `slack`."),
-         positive("slack", "For never_*: allowed change a step, relative to the largest value. Absent: 1e-12, round-off of a long sum."),
-         number("at", "The sweep value of which the claim speaks; absent: the last."),
-         flag("every", "The worst over the whole sweep counts."),
+         positive("slack", "For never_*: allowed change per step, relative to the largest value. Absent: 1e-12, round-off of a long sum."),
+         number("at", "The sweep value to which the claim applies; absent: the last."),
+         flag("every", "The claim applies to the worst value of the whole sweep."),
          {.name = "size", .type = Type::choice, .doc = "Claimed only at this size; absent: at both.", .choices = {"ci", "full"}}});
 }
 
@@ -85,14 +86,14 @@ std::vector<Key> variant_keys() {
 
 const std::vector<Key>& case_keys() {
     static const std::vector<Key> keys = [] {
-        std::vector<Key> list = {text("question", "What the case asks.", true),
-                                 text("blind_to", "What it cannot see.", true),
+        std::vector<Key> list = {text("question", "Question of the case.", true),
+                                 text("blind_to", "What it does not cover.", true),
                                  {.name = "kind",
                                   .type = Type::choice,
                                   .doc = "exact and convergence verify, benchmark validates, iterations weighs accuracy against work.",
                                   .required = true,
                                   .choices = {"exact", "convergence", "benchmark", "iterations"}}};
-        std::vector<Key> variant = {text("name", "Its name in tables, figures and folders.", true)};
+        std::vector<Key> variant = {text("name", "Its name in tables, plots and folders.", true)};
         variant.push_back(
             {.name = "size", .type = Type::choice, .doc = "Run only at this size; absent: at both.", .choices = {"ci", "full"}});
         for (const Key& k : shared_keys()) list.push_back(k), variant.push_back(k);
@@ -100,8 +101,7 @@ const std::vector<Key>& case_keys() {
                              {text("key", "The key.", true),
                               {.name = "values", .type = Type::texts, .doc = "Its values at full size.", .required = true},
                               {.name = "ci", .type = Type::texts, .doc = "Its values at ci size; absent: the same."}}));
-        list.push_back(
-            tables("variants", "Configurations that are run and judged each on its own; what the case says holds for all.", variant));
+        list.push_back(tables("variants", "Configurations, each run and evaluated separately; keys of the case apply to all.", variant));
         return list;
     }();
     return keys;

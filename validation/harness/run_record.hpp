@@ -66,7 +66,7 @@ struct RunRecord {
     }
     const FieldView& field(std::string_view name) const {
         if (const FieldView* f = fields.find(name)) return *f;
-        throw BadInput("the solver shows no field \"" + std::string(name) + "\"");
+        throw BadInput("the solver provides no field \"" + std::string(name) + "\"");
     }
     bool has_integral(std::string_view name) const { return index_of(name) < integrals.size(); }
     /// An integral, an observed metric, a probe ("probe.NAME", its first column, or "probe.NAME.velocity_x"), or a number of the step

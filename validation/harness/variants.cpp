@@ -19,7 +19,7 @@ void VariantReader::problem(scene::Place at, std::string message, std::string hi
 
 std::string VariantReader::said(const Table& t, const std::string& key) {
     const std::string& text = t.text(key);
-    if (text.find_first_not_of(" \t\n") == std::string::npos) problem(t.place(key), fmt::format("\"{}\" says nothing", key));
+    if (text.find_first_not_of(" \t\n") == std::string::npos) problem(t.place(key), fmt::format("\"{}\" is empty", key));
     return text;
 }
 
@@ -36,7 +36,8 @@ std::vector<Variant> VariantReader::over(const Table& t, const Variant& common, 
             list.push_back(common);
             list.back().name = value;
             list.back().overrides.push_back({t.text("key"), value});
-            check_name(t.place(of), list, fmt::format("a value that is no name stands in [[{}]], with a name and set", names));
+            check_name(t.place(of), list,
+                       fmt::format("a value that is not a valid name requires an entry [[{}]] with name and set", names));
         }
         if (of == std::string("values") || size_ == Size::ci) chosen = std::move(list);
     }
@@ -49,7 +50,7 @@ std::vector<Variant> VariantReader::read(const Table& root, std::string_view key
     std::vector<Variant> list, of_size;
     if (root.has("over")) {
         list = of_size = over(root.table("over"), common, key);
-        if (!root.tables(key).empty()) problem(root.table("over").place("key"), fmt::format("there is [over] or [[{}]], not both", key));
+        if (!root.tables(key).empty()) problem(root.table("over").place("key"), fmt::format("give [over] or [[{}]], not both", key));
     }
     for (const Table& t : root.tables(key)) {
         list.push_back(common);
@@ -67,7 +68,7 @@ void VariantReader::check_name(scene::Place at, const std::vector<Variant>& list
     if (n.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.") != std::string::npos)
         problem(at, fmt::format("variant name {} may have letters, digits and _ - + . only", scene::quote(n)), hint);
     if (n.empty() || n == "." || n == "..")
-        problem(at, fmt::format("{} is no name of a variant: it names a folder", scene::quote(n)), hint);
+        problem(at, fmt::format("{} is not a valid name of a variant: it must be usable as a folder name", scene::quote(n)), hint);
     if (std::count_if(list.begin(), list.end(), [&](const Variant& v) { return v.name == n; }) > 1)
         problem(at, fmt::format("two variants are called {}", scene::quote(n)));
 }

@@ -56,7 +56,7 @@ void judge_orders(Verdict& v, const Criterion& c, const std::vector<RunResult>& 
     v.measured = c.test == Test::gci_at_most ? x.gci_fine : table.order();
     v.pass = v.measured >= c.low && v.measured <= c.high;
     v.at = runs.back().label;
-    if (std::isnan(v.measured)) v.note = "these grids give no order";
+    if (std::isnan(v.measured)) v.note = "no order can be computed from these grids";
     if (table.quantity() == Quantity::error || runs.size() < 3) return;
     const bool asymptotic = x.monotone && x.asymptotic > asymptotic_low && x.asymptotic < asymptotic_high;
     if (asymptotic) return;
@@ -85,7 +85,7 @@ Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<Run
         judge_orders(v, c, runs);
     else
         judge_values(v, c, chosen);
-    if (!c.not_reached.empty() && v.pass) v.note = "this bound is reached: \"not_reached\" can go";
+    if (!c.not_reached.empty() && v.pass) v.note = "this open target is met: remove \"not_reached\"";
     return v;
 }
 

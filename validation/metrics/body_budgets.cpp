@@ -40,7 +40,7 @@ real force_on_walls(const FieldSet& fields, int axis) {
 /// The density of the one body of a scene.
 real density_of_body(const RunRecord& run, const char* metric) {
     const auto& list = run.scene->root().tables("bodies");
-    if (list.size() != 1 || !list[0].has("density")) refuse(metric, "asks for one body, and for its density, where fluid fills the box");
+    if (list.size() != 1 || !list[0].has("density")) refuse(metric, "requires one body with a density, where fluid fills the domain");
     return list[0].number("density");
 }
 
@@ -55,9 +55,9 @@ Curve momentum_by_displacement(const RunRecord& run, const std::string& axis) {
     for (const scene::Table& liquid : run.scene->root().tables("liquid"))
         for (std::size_t d = 0; liquid.text("shape") == "box" && d < static_cast<std::size_t>(g.dim); ++d)
             room /= liquid.numbers("max").at(d) - liquid.numbers("min").at(d);
-    if (!(std::abs(room - 1) < 1e-12)) refuse(metric, "of water asks for a box that is full of it");
+    if (!(std::abs(room - 1) < 1e-12)) refuse(metric, "of water requires a full domain");
     Curve momentum = run.series("bodies_momentum_" + axis);
-    if (run.scene->has("initial.velocity")) refuse(metric, "of water asks for water that rests at first");
+    if (run.scene->has("initial.velocity")) refuse(metric, "of water requires water at rest at the start");
     for (std::size_t i = 0; i < momentum.size(); ++i) momentum.y[i] *= i > 0 ? -ratio : 0;
     return momentum;
 }
@@ -68,7 +68,7 @@ Curve momentum_of_fluid(const RunRecord& run, const std::string& axis) {
 
 /// Along an axis, over the run: momentum of the fluid and of the bodies, and the impulse that walls were given, less the first sum.
 Curve missing_momentum(const RunRecord& run, const std::string& metric, const std::string& axis) {
-    if (run.scene->effect("gravity")) refuse(metric.c_str(), "asks for a scene without gravity, whose impulse no integral tells");
+    if (run.scene->effect("gravity")) refuse(metric.c_str(), "requires a scene without gravity, whose impulse is not an integral");
     Curve missing = momentum_of_fluid(run, axis);
     const Curve bodies = run.series("bodies_momentum_" + axis), force = run.series(metric);
     const real first = missing.y.at(0) + bodies.y.at(0);
@@ -115,7 +115,7 @@ real turning_of_bodies(const FieldSet& fields, const scene::Scene& scene) {
     rigid::Bodies<D> bodies(scene);
     const auto value = [&](const char* name, std::size_t component, std::size_t body) {
         const FieldView* field = fields.find(rigid::body_set_name, name);
-        if (!field) refuse("budget.angular_momentum", std::string("asks for bodies, and none shows its ") + name);
+        if (!field) refuse("budget.angular_momentum", std::string("requires bodies that provide their ") + name);
         return field->data.at(component)[body];
     };
     bodies.recall(value);
@@ -250,7 +250,7 @@ real lowest_of_bodies(const scene::Scene& scene) {
 
 /// Of fluid and bodies over the run: kinetic, potential and, of what can be compressed, elastic.
 Curve energy_of_all(const RunRecord& run) {
-    if (!has_bodies(*run.scene)) refuse("budget.energy_gain", "asks for bodies: energy_gain counts fluids alone");
+    if (!has_bodies(*run.scene)) refuse("budget.energy_gain", "requires bodies: energy_gain covers fluids only");
     Curve sum = run.series("bodies_kinetic_energy");
     const auto add = [&](const std::string& name) {
         const Curve c = run.series(name);

@@ -28,10 +28,10 @@ real observe_energy(const FieldSet& fields, const scene::Scene&, real) { return 
 /// What does work that no integral counts: of gravity the potential energy tells.
 void refuse_uncounted_work(const scene::Scene& scene) {
     const auto refuse = [](const std::string& what) {
-        throw BadInput("energy_gain counts the work of gravity alone; " + what + " do work that no integral tells of");
+        throw BadInput("energy_gain covers only the work of gravity; " + what + " do work that no integral records");
     };
     if (scene.has("bodies") && !scene.root().tables("bodies").empty())
-        throw BadInput("energy_gain counts the energy of the fluid alone, and bodies have their own: budget.energy_gain counts both");
+        throw BadInput("energy_gain covers only the energy of the fluid; use budget.energy_gain for fluid and bodies");
     if (scene.has("emitters") && !scene.root().tables("emitters").empty()) refuse("emitters");
     if (scene.has("solids"))
         for (const scene::Table& solid : scene.root().tables("solids"))

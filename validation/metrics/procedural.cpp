@@ -75,7 +75,7 @@ Panel band_panel(const RunRecord& run, const Reference& ref) {
 }
 
 Solver& solver_of(const RunRecord& run) {
-    if (!run.simulation) throw BadInput("this metric asks the solver itself, and the run has none");
+    if (!run.simulation) throw BadInput("this metric requires the solver, which this run does not keep");
     return run.simulation->solver();
 }
 
@@ -83,7 +83,7 @@ Solver& solver_of(const RunRecord& run) {
 template <std::size_t N>
 std::array<real, N> ask(const Solver& solver, const char* field, const Vec<3>& at) {
     std::array<real, N> values{};
-    if (!solver.answer(field, at, values)) throw BadInput(std::string("the solver does not know \"") + field + "\" at a point");
+    if (!solver.answer(field, at, values)) throw BadInput(std::string("the solver does not provide \"") + field + "\" at a point");
     return values;
 }
 

@@ -198,7 +198,7 @@ std::string map_svg(const Map& m) {
         s += fmt::format(
             "<g class=\"cell {}\"><rect x=\"8\" y=\"{:.0f}\" width=\"16\" height=\"16\"/></g><text x=\"30\" y=\"{:.0f}\">{}</text>\n",
             k == 0 ? std::string("held") : fmt::format("k{}", (k - 1) % colours), y, y + 13,
-            k == 0 ? "nothing broke" : escaped("broke first: " + m.kinds[k - 1] + " (step)"));
+            k == 0 ? "no failure" : escaped("first failure: " + m.kinds[k - 1] + " (step)"));
     }
     return s + "</svg>\n";
 }

@@ -62,14 +62,14 @@ HtmlTable::Cell bar(std::optional<double> part) {
 }
 
 HtmlTable::Cell verdict_cell(const json& v) {
-    if (!text_at(v, "not_reached").empty()) return raw("asked", 0.5);
+    if (!text_at(v, "not_reached").empty()) return raw("open", 0.5);
     const bool pass = v.value("pass", false);
     return raw(pass ? "<b class=\"pass\">pass</b>" : "<b class=\"no\">FAIL</b>", pass ? 1 : 0);
 }
 
 std::string overview(const std::vector<CaseClaims>& cases) {
-    HtmlTable table({"case", "question", "kind", "claims held", "nearest to its bound", "seconds"},
-                    "Every case; its name leads to its claims, reasons and blind spot");
+    HtmlTable table({"case", "question", "kind", "claims passed", "largest part of a bound used", "seconds"},
+                    "All cases; each name links to the claims, their rationale and what is not covered");
     for (const CaseClaims& c : cases) {
         const json& first = *c.claims.front();
         const bool all = c.all_held();
@@ -88,14 +88,14 @@ std::string overview(const std::vector<CaseClaims>& cases) {
 
 std::string figure(const std::string& name, const std::filesystem::path& results) {
     const std::string svg = bytes_of(results / "svg" / (name + ".svg"));
-    if (svg.empty()) return "<p>No figure is published.</p>";
+    if (svg.empty()) return "<p>No plot is published.</p>";
     return fmt::format("<figure class=\"scroll\">{}</figure>\n", inline_svg(thin_svg(svg), name));
 }
 
 std::string links(const std::string& name, const std::filesystem::path& results) {
     std::string s;
-    for (const auto& [path, what] : {std::pair{"csv/" + name + ".csv", "every number (CSV)"},
-                                     {"svg/" + name + ".svg", "figure (SVG)"},
+    for (const auto& [path, what] : {std::pair{"csv/" + name + ".csv", "all values (CSV)"},
+                                     {"svg/" + name + ".svg", "plot (SVG)"},
                                      {"../cases/" + name + "/case.toml", "claims as written"},
                                      {"../cases/" + name + "/README.md", "physics and source"}})
         if (std::filesystem::exists(results / path)) s += fmt::format(" · <a href=\"{}\">{}</a>", escaped(path), what);
@@ -108,14 +108,13 @@ std::string detail(const CaseClaims& c, const std::filesystem::path& results) {
     std::string s =
         fmt::format("<details id=\"case-{0}\" class=\"case\"{1}><summary><b>{0}</b> <span class=\"{2}\">{3} of {4}</span> {5}</summary>\n",
                     escaped(c.name), all ? "" : " open", all ? "pass" : "no", c.held, c.count(), escaped(text_at(first, "question")));
-    s += fmt::format("<p><b>Blind to:</b> {}</p>\n", escaped(text_at(first, "blind_to")));
+    s += fmt::format("<p><b>Not covered:</b> {}</p>\n", escaped(text_at(first, "blind_to")));
     if (!text_at(first, "source").empty()) s += fmt::format("<p><b>Compared with:</b> {}</p>\n", escaped(text_at(first, "source")));
-    HtmlTable table({"verdict", "claim", "measured", "bound", "part of the bound used", "why this bound", "seconds"},
-                    "Claims of " + c.name);
+    HtmlTable table({"verdict", "claim", "measured", "bound", "part of the bound used", "rationale", "seconds"}, "Claims of " + c.name);
     for (const json* v : c.claims) {
         std::string why = escaped(text_at(*v, "why"));
         const std::string short_of = text_at(*v, "not_reached");
-        if (!short_of.empty()) why += " <b>Not reached:</b> " + escaped(short_of);
+        if (!short_of.empty()) why += " <b>Open target, not met:</b> " + escaped(short_of);
         if (const std::string note = text_at(*v, "note"); !note.empty()) why += " <b>" + escaped(note) + "</b>";
         const double seconds = number_at(*v, "seconds").value_or(0);
         table.row({verdict_cell(*v),
@@ -150,20 +149,19 @@ std::string parts(const json& verdicts) {
 /// What was asked and is not met, with its figure: a bound is never moved to where it passes.
 std::string not_reached(const json& bounds) {
     if (bounds.empty()) return "";
-    HtmlTable table({"case", "bound", "asked", "measured", "why it is asked", "why it is not met"},
-                    "Bounds that were asked for and are not met");
+    HtmlTable table({"case", "claim", "target", "measured", "rationale", "reason not met"}, "Open targets: bounds that are not met");
     for (const json& v : bounds)
         table.row({raw(fmt::format("<a href=\"#case-{0}\">{0}</a>", escaped(text_at(v, "case")))), word(text_at(v, "claim")),
                    raw("<span class=\"bound\">" + escaped(text_at(v, "bound_text")) + "</span>"), value(number_at(v, "measured")),
                    word(text_at(v, "why")), word(text_at(v, "not_reached"))});
-    return "<h3 id=\"asked\">Asked and not reached</h3>\n" + table.html();
+    return "<h3 id=\"asked\">Open targets</h3>\n" + table.html();
 }
 
 std::string unpinned(const json& verdicts) {
     std::string list;
     for (const std::string& name : unpinned_cases(verdicts))
         list += fmt::format("{0}<a href=\"#case-{1}\">{1}</a>", list.empty() ? "" : ", ", escaped(name));
-    return list.empty() ? "" : "<p><b>Not compared with the code since they were measured:</b> " + list + ".</p>\n";
+    return list.empty() ? "" : "<p><b>Not verified against the current code:</b> " + list + ".</p>\n";
 }
 
 std::string failures(const json& verdicts) {
@@ -198,18 +196,17 @@ Section claims_section(const json& all_verdicts, const std::filesystem::path& re
     const bool all = held == verdicts.size();
     Section section;
     section.summary = fmt::format(
-        "<p class=\"big {}\">{} of {}</p><p>claims hold, in {} cases, each against an analytic or published reference. {} use more than "
+        "<p class=\"big {}\">{} of {}</p><p>claims pass, in {} cases, each against an analytic or published reference. {} use more than "
         "{:.0f}% of their bound.{}</p>{}{}",
         all ? "pass" : "no", held, verdicts.size(), cases.size(), close, 100 * nearly,
-        open.empty() ? "" : fmt::format(" <a href=\"#asked\">{} bounds were asked for and are not reached.</a>", open.size()),
-        parts(verdicts), failures(verdicts));
+        open.empty() ? "" : fmt::format(" <a href=\"#asked\">{} open targets are not met.</a>", open.size()), parts(verdicts),
+        failures(verdicts));
     section.html =
-        "<p>A claim is a measured number, a bound, and the reason of that bound. Verification asks whether the equations are "
-        "solved right, validation whether they are the right equations. A case also says what it cannot see.</p>\n" +
+        "<p>A claim is a measured value, a bound, and the rationale of that bound. Verification tests whether the equations are solved "
+        "correctly, validation whether they are the right equations. Each case also states what it does not cover.</p>\n" +
         unpinned(all_verdicts) + overview(cases) + not_reached(open) +
-        "<h3 id=\"cases\">Claim by claim</h3>\n<p class=\"tools\"><label>Show claims that contain <input id=\"filter\" "
-        "type=\"search\" placeholder=\"sph, divergence, order …\"></label> <button type=\"button\" id=\"unfold\">Open all "
-        "cases</button></p>\n";
+        "<h3 id=\"cases\">All claims by case</h3>\n<p class=\"tools\"><label>Show claims that contain <input id=\"filter\" type=\"search\" "
+        "placeholder=\"sph, divergence, order …\"></label> <button type=\"button\" id=\"unfold\">Open all cases</button></p>\n";
     for (const CaseClaims& c : cases) section.html += detail(c, results);
     return section;
 }

@@ -28,10 +28,11 @@ double abscissa(const json& study, const json& point) {
 /// One curve a method through its settings, both in the order of the study, and the front.
 Panel panel_of(const json& study) {
     const std::string unit = text_at(study, "unit");
-    Panel panel{.title = text_at(study, "question"),
-                .x = {by_step(study) ? "computing time a step [ms]" : "real-time factor: simulated seconds a second of computing", true},
-                .y = {text_at(study, "error") + (unit.empty() ? "" : " [" + unit + "]"), true}};
-    Curve front{.label = "Pareto front: nothing is both cheaper and more accurate", .dashed = true};
+    Panel panel{
+        .title = text_at(study, "question"),
+        .x = {by_step(study) ? "computing time per step [ms]" : "real-time factor: simulated seconds per second of computing", true},
+        .y = {text_at(study, "error") + (unit.empty() ? "" : " [" + unit + "]"), true}};
+    Curve front{.label = "Pareto front: no configuration is both cheaper and more accurate", .dashed = true};
     std::vector<const json*> ordered;
     for (const json& p : study["points"]) {
         if (failed(p)) continue;
@@ -48,18 +49,19 @@ Panel panel_of(const json& study) {
         at->x.push_back(abscissa(study, *p)), at->y.push_back(number_at(*p, "error").value_or(0)), at->names.push_back(text_at(*p, "name"));
     }
     panel.curves.push_back(std::move(front));
-    panel.shade = {number_at(study, "known_to").value_or(0), "the reference itself is known no better"};
+    panel.shade = {number_at(study, "known_to").value_or(0), "below the uncertainty of the reference"};
     return panel;
 }
 
 std::vector<Mark> marks_of(const json& study) { return by_step(study) ? std::vector<Mark>{} : std::vector<Mark>{{1, "real time"}}; }
 
 std::string table_of(const json& study) {
-    std::vector<std::string> heads = {"setting", text_at(study, "error"), "× real time", "ms of a 60 Hz frame", "ms a step", "MB", "steps"};
+    std::vector<std::string> heads = {"setting", text_at(study, "error"), "× real time", "ms of a 60 Hz frame", "ms per step", "MB",
+                                      "steps"};
     const auto also = study.value("also", std::vector<std::string>{});
     heads.insert(heads.end(), also.begin(), also.end());
-    heads.push_back("on the front");
-    HtmlTable table(heads, "All settings of " + text_at(study, "study"));
+    heads.push_back("on the Pareto front");
+    HtmlTable table(heads, "All configurations of " + text_at(study, "study"));
     for (const json& p : study["points"]) {
         const auto bytes = number_at(p, "bytes");
         const bool broken = failed(p), front = p.value("front", false);
@@ -90,30 +92,28 @@ std::string study_html(const json& study, const std::filesystem::path& results) 
     for (const json& sentence : study["advice"]) s += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
     s += "</ul></div>\n";
     for (const json& note : study.value("notes", json::array())) s += "<p class=\"fine\">" + escaped(note.get<std::string>()) + "</p>\n";
-    s += "<details><summary>All settings</summary>" + table_of(study) + "</details>\n";
+    s += "<details><summary>All configurations</summary>" + table_of(study) + "</details>\n";
     s += fmt::format("<p class=\"fine\"><code>./weir.sh cost {0} --size {1}</code> · {2} thread(s), commit {3}, {4}", escaped(name),
                      escaped(text_at(study, "size")), study.value("threads", 1), escaped(text_at(study, "commit")),
                      escaped(text_at(study, "machine")));
     if (!study.contains("notes") && !text_at(study, "source").empty()) s += " · compared with " + escaped(text_at(study, "source"));
     if (const std::string csv = "cost/csv/" + name + ".csv"; std::filesystem::exists(results / csv))
-        s += fmt::format(" · <a href=\"{}\">every number (CSV)</a>", escaped(csv));
+        s += fmt::format(" · <a href=\"{}\">all values (CSV)</a>", escaped(csv));
     return s + "</p></article>\n";
 }
 
 /// The figures of the report that began this work beside ours.
 std::string report_table(const json& t) {
-    HtmlTable table({"problem", "the report", "on", "weir", "unit", "times as fast", "frames/s in a window"},
+    HtmlTable table({"problem", "the report", "on", "weir", "unit", "speedup", "frames/s in a window"},
                     "Threads of weir: " + std::to_string(t.value("threads", 1)));
     for (const json& row : t["rows"])
         table.row({word(text_at(row, "what")), raw(escaped(text_at(row, "theirs")), number_at(row, "their_value")),
                    word(text_at(row, "on")), value(number_at(row, "ours")), word(text_at(row, "unit")), value(number_at(row, "times")),
                    row.contains("drawn") ? value(number_at(row, "drawn")) : word("")});
     return fmt::format(
-        "<article id=\"report-table\"><h3>{}</h3><p>Before weir there was a report that measured such methods in "
-        "programs of its own, on one PC. Its figures stand here as it gives them: nobody can measure them again, so they compare with "
-        "weir's in their order of magnitude only.</p><p>{}</p>{}<p class=\"fine\"><code>./weir.sh cost "
-        "--report-table</code> · the "
-        "report: {} · weir: commit {}, {}</p></article>\n",
+        "<article id=\"report-table\"><h3>{}</h3><p>An earlier report measured such methods in its own programs on one PC. Its values are "
+        "quoted as published. They cannot be measured again, so compare only their order of magnitude with weir's.</p><p>{}</p>{}<p "
+        "class=\"fine\"><code>./weir.sh cost --report-table</code> · the report: {} · weir: commit {}, {}</p></article>\n",
         escaped(text_at(t, "question")), escaped(text_at(t, "reading")), table.html(), escaped(text_at(t, "their_machine")),
         escaped(text_at(t, "commit")), escaped(text_at(t, "machine")));
 }
@@ -132,8 +132,8 @@ std::vector<std::string> cells_of(const std::string& line) {
 /// What each effect adds to a step, from what `weir cost --effects --publish` wrote; empty where it has not.
 std::string effects_table(const std::filesystem::path& results) {
     std::istringstream csv(bytes_of(results / "cost" / "effects.csv"));
-    HtmlTable table({"solver", "dim", "effect", "a term of", "ms without", "ms with", "times the step", "more kB"},
-                    "A step with the effect and one without it, taken in turns; medians");
+    HtmlTable table({"solver", "dim", "effect", "a term of", "ms without", "ms with", "ratio of step times", "additional kB"},
+                    "Steps with and without the effect, measured alternately; medians");
     std::map<std::string, std::size_t> column;
     std::size_t rows = 0;
     for (std::string line; std::getline(csv, line);) {
@@ -151,11 +151,10 @@ std::string effects_table(const std::filesystem::path& results) {
         ++rows;
     }
     if (rows == 0) return "";
-    return "<article id=\"effects\"><h3>What does each effect cost that a scene may call for?</h3><p>What a scene does not name allocates "
-           "no "
-           "field and runs no pass.</p>" +
+    return "<article id=\"effects\"><h3>What does each effect cost?</h3><p>An effect that a scene does not name allocates no field and "
+           "runs no pass.</p>" +
            table.html() +
-           "<p class=\"fine\"><code>./weir.sh cost --effects</code> · <a href=\"cost/effects.csv\">every number (CSV)</a></p></article>\n";
+           "<p class=\"fine\"><code>./weir.sh cost --effects</code> · <a href=\"cost/effects.csv\">all values (CSV)</a></p></article>\n";
 }
 
 /// Water methods side by side first, then the others by name: the more methods, the more a newcomer learns.
@@ -178,10 +177,10 @@ Section cost_section(const std::vector<json>& studies, const std::filesystem::pa
     if (!order.empty()) {
         section.summary = fmt::format("<p class=\"asks\">{}</p><ul>", escaped(text_at(*order.front(), "question")));
         for (const json& sentence : (*order.front())["advice"]) section.summary += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
-        section.summary += fmt::format("</ul><p><a href=\"#cost-{}\">Figure and table</a></p>", escaped(text_at(*order.front(), "study")));
+        section.summary += fmt::format("</ul><p><a href=\"#cost-{}\">Plot and table</a></p>", escaped(text_at(*order.front(), "study")));
         section.html =
-            "<p>Nobody compares settings here, only error for time. Computing time is wall-clock time of all steps but the first, the "
-            "median of the repeats; settings that fail stay in the tables.</p>\n";
+            "<p>The comparison is error against computing time: wall-clock time of all steps but the first, median of the repeats. Failed "
+            "configurations stay in the tables.</p>\n";
     }
     for (const json* study : order) section.html += study_html(*study, results);
     if (const json table = json_of(results / "cost" / "report_table.json"); table.is_object()) section.html += report_table(table);

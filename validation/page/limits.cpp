@@ -30,29 +30,29 @@ void add_rows(HtmlTable& table, const json& study) {
     for (const json& l : study["limits"]) {
         const bool guarded = l.value("guarded", true);
         const std::string doubt = text_at(l, "doubt").empty() ? "" : " <b class=\"no\">" + escaped(text_at(l, "doubt")) + "</b>";
-        const std::string there = text_at(l, "hardship").empty() ? "" : "<br>there: " + escaped(text_at(l, "hardship"));
+        const std::string there = text_at(l, "hardship").empty() ? "" : "<br>at the limit: " + escaped(text_at(l, "hardship"));
         std::string theory = number_at(l, "theory") ? number_text(*number_at(l, "theory")) : "–";
         if (!text_at(l, "theory_source").empty())
             theory = "<span class=\"theory\">" + theory + ": " + escaped(text_at(l, "theory_source")) + "</span>";
-        table.row({word(text_at(l, "solver").empty() ? text_at(study, "study") : text_at(l, "solver")),
-                   word(axis_of(l)),
-                   word(text_at(l, "kind")),
-                   last_stable(l),
-                   {.html = theory, .key = number_at(l, "theory")},
-                   {.html = (number_at(l, "floor") ? number_text(*number_at(l, "floor")) : "–") +
-                            (guarded ? "" : " <b class=\"no\">not reached</b>"),
-                    .key = number_at(l, "floor"),
-                    .number = true},
-                   raw("<span class=\"why\">" + escaped(text_at(l, "broke")) + there + "</span>" + doubt),
-                   word(text_at(study, "study"))},
-                  guarded && doubt.empty() ? "" : "fail");
+        table.row(
+            {word(text_at(l, "solver").empty() ? text_at(study, "study") : text_at(l, "solver")),
+             word(axis_of(l)),
+             word(text_at(l, "kind")),
+             last_stable(l),
+             {.html = theory, .key = number_at(l, "theory")},
+             {.html = (number_at(l, "floor") ? number_text(*number_at(l, "floor")) : "–") + (guarded ? "" : " <b class=\"no\">not met</b>"),
+              .key = number_at(l, "floor"),
+              .number = true},
+             raw("<span class=\"why\">" + escaped(text_at(l, "broke")) + there + "</span>" + doubt),
+             word(text_at(study, "study"))},
+            guarded && doubt.empty() ? "" : "fail");
     }
 }
 
 /// What was asked for beyond the floor that is guarded, with how far each comes.
 std::string not_reached(const std::vector<json>& studies) {
-    HtmlTable table({"case", "pushed along", "asked", "last stable", "floor", "why it is not reached"},
-                    "Limits that were asked for and are not reached");
+    HtmlTable table({"case", "parameter raised", "target", "stable up to", "guaranteed", "reason not met"},
+                    "Open targets: limits that are not met");
     bool any = false;
     for (const json& study : studies)
         for (const json& l : study["limits"]) {
@@ -61,7 +61,7 @@ std::string not_reached(const std::vector<json>& studies) {
             table.row({word(text_at(study, "study")), word(axis_of(l)), value(number_at(l, "asked")), last_stable(l),
                        value(number_at(l, "floor")), word(text_at(l, "not_reached"))});
         }
-    return any ? "<h3 id=\"asked-limits\">Asked and not reached</h3>\n" + table.html() : "";
+    return any ? "<h3 id=\"asked-limits\">Open targets</h3>\n" + table.html() : "";
 }
 
 /// Each axis once, with what makes it hard.
@@ -74,7 +74,7 @@ std::string reasons(const std::vector<json>& studies) {
                                                 escaped(text_at(study, "study")), escaped(text_at(l, "hard_because")));
             if (told.insert(one).second) list += one;
         }
-    return "<details><summary>Why each axis is hard</summary><ul class=\"reasons\">" + list + "</ul></details>\n";
+    return "<details><summary>Difficulty of each axis</summary><ul class=\"reasons\">" + list + "</ul></details>\n";
 }
 
 /// Limits that theory has a word on, one line an axis: what was found, over all methods, beside what was foretold.
@@ -115,10 +115,12 @@ void Counts::add(const json& limit) {
 }
 
 std::string Counts::verdict() const {
-    const std::string floors =
-        below ? fmt::format("{} below the floor that is guarded.", below) : std::string("Every floor that is guarded holds.");
-    return floors + (asked ? fmt::format(" {} asked for beyond the floor {} not reached.", asked, asked == 1 ? "is" : "are") : "") +
-           (doubted ? fmt::format(" {} are not what they say.", doubted) : "");
+    const std::string floors = below ? fmt::format("{} below the guaranteed range.", below) : std::string("Every guaranteed range passes.");
+    return floors +
+           (asked ? fmt::format(" {} open {} beyond the guaranteed range {} not met.", asked, asked == 1 ? "target" : "targets",
+                                asked == 1 ? "is" : "are")
+                  : "") +
+           (doubted ? fmt::format(" {} contradict their description.", doubted) : "");
 }
 
 Map drawing_of_map(const json& m) {
@@ -141,7 +143,7 @@ Map drawing_of_map(const json& m) {
         for (const json& c : column) {
             if (c.value("stable", true)) {
                 map.cells.back().push_back(
-                    {.text = "held", .detail = fmt::format("held for {} steps or to the scene's end", m.value("steps", 0))});
+                    {.text = "held", .detail = fmt::format("stable for {} steps or to the scene's end", m.value("steps", 0))});
                 continue;
             }
             const std::string kind = text_at(c, "kind");
@@ -160,8 +162,8 @@ Map drawing_of_map(const json& m) {
 
 Section limits_section(const std::vector<json>& studies) {
     if (studies.empty()) return {.summary = "<p>No limit is published: <code>./weir.sh stability --all --publish</code></p>", .html = ""};
-    HtmlTable table({"solver", "pushed along", "kind", "last stable", "theory", "floor", "what broke first", "case"},
-                    "Each key is raised until something that must hold does not; the last value at which all held is the limit");
+    HtmlTable table({"solver", "parameter raised", "kind", "stable up to", "theory", "guaranteed", "first failure", "case"},
+                    "Each key is raised until an invariant fails; the last value at which all invariants pass is the limit");
     Counts counts;
     std::set<std::string> machines;
     for (const json& study : studies) {
@@ -171,16 +173,15 @@ Section limits_section(const std::vector<json>& studies) {
     }
     Section section;
     section.summary = fmt::format(
-        "<p class=\"big {}\">{} limits</p><p>measured by pushing solvers until an invariant broke; {} did not break, and the table says "
-        "why "
-        "nothing can. {} more axes are checks of units, {} of what guards a run. {}</p>{}",
+        "<p class=\"big {}\">{} limits</p><p>measured by raising parameters until an invariant failed; {} never failed, for the reason "
+        "given in the table. {} further axes check independence of units, {} check guards. {}</p>{}",
         counts.below + counts.doubted ? "no" : "pass", counts.limits, counts.unbroken, counts.units, counts.guards, counts.verdict(),
         beside_theory(studies));
     for (const json& study : studies)
         if (study.contains("maps"))
             for (const json& map : study["maps"])
                 section.html +=
-                    fmt::format("<figure><div class=\"scroll\">{}</div><figcaption>{}: hard because {}</figcaption></figure>\n",
+                    fmt::format("<figure><div class=\"scroll\">{}</div><figcaption>{}: difficulty: {}</figcaption></figure>\n",
                                 map_svg(drawing_of_map(map)), escaped(text_at(study, "study")), escaped(text_at(map, "hard_because")));
     if (!section.html.empty()) section.html = "<h3>Two axes at once</h3><div class=\"maps\">" + section.html + "</div>";
     section.html += not_reached(studies) + "<h3>All limits</h3>" + table.html() + reasons(studies);

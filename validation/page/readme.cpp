@@ -24,7 +24,7 @@ std::string side_by_side(const std::filesystem::path& results, const std::string
         "method]({}/cost/svg/dam_break_martin_moyce.svg)\n\n",
         text_at(study, "question"), prefix);
     for (const json& sentence : study["advice"]) s += "- " + sentence.get<std::string>() + "\n";
-    return s + fmt::format("\n{}, {} thread(s), {} size; every setting and the other studies: [{}/cost]({}/cost/index.md).\n\n",
+    return s + fmt::format("\n{}, {} thread(s), {} size; all configurations and the other studies: [{}/cost]({}/cost/index.md).\n\n",
                            text_at(study, "machine"), study.value("threads", 1), text_at(study, "size"), prefix, prefix);
 }
 
@@ -34,10 +34,10 @@ struct Asked {
 };
 
 std::string claims_table(const json& verdicts, const std::string& prefix) {
-    const Asked parts[] = {{"Are the equations solved right?", {"exact", "convergence"}},
+    const Asked parts[] = {{"Are the equations solved correctly?", {"exact", "convergence"}},
                            {"Are they the right equations?", {"benchmark"}},
-                           {"What does accuracy cost a solver?", {"iterations"}}};
-    std::string s = "### What is claimed\n| question | claims that hold | in cases |\n|---|---|---|\n";
+                           {"How much solver work does accuracy cost?", {"iterations"}}};
+    std::string s = "### Claims\n| question | claims that pass | cases |\n|---|---|---|\n";
     for (const Asked& part : parts) {
         std::size_t held = 0, all = 0;
         std::set<std::string> cases;
@@ -61,8 +61,8 @@ std::string limits_line(const std::filesystem::path& results, const std::string&
     }
     if (counts.limits + counts.units + counts.guards == 0) return "";
     return fmt::format(
-        "\n**Where it breaks:** {} limits measured, {} of them not reached however far the solver was pushed; {} checks of units, {} of "
-        "guards. {} [{}/stability]({}/stability/index.md).\n",
+        "\n**Stability limits:** {} limits measured, {} of them without a failure in the tested range; {} checks of units, {} of guards. "
+        "{} [{}/stability]({}/stability/index.md).\n",
         counts.limits, counts.unbroken, counts.units, counts.guards, counts.verdict(), prefix, prefix);
 }
 
@@ -70,14 +70,12 @@ std::string limits_line(const std::filesystem::path& results, const std::string&
 
 std::string readme_part(const std::filesystem::path& results, const std::string& prefix) {
     const json verdicts = json_of(results / "verdicts.json");
-    if (!verdicts.is_array()) throw BadInput(results.string() + " holds no readable verdicts.json");
+    if (!verdicts.is_array()) throw BadInput(results.string() + " has no readable verdicts.json");
     const std::size_t open = asked(verdicts).size();
     const std::string not_reached =
-        open == 0 ? ""
-                  : fmt::format("\n{} bounds were asked for and are not reached: [the table]({}/index.md#asked-and-not-reached).\n", open,
-                                prefix);
+        open == 0 ? "" : fmt::format("\n{} open targets are not met: [the table]({}/index.md#open-targets).\n", open, prefix);
     return side_by_side(results, prefix) + claims_table(claimed(verdicts), prefix) + not_reached + limits_line(results, prefix) +
-           fmt::format("\nAll of it on one page, to open in a browser: `{}/index.html`.\n", prefix);
+           fmt::format("\nAll results on one page for a browser: `{}/index.html`.\n", prefix);
 }
 
 void update_readme(const std::filesystem::path& readme, const std::filesystem::path& results) {

@@ -59,11 +59,11 @@ std::vector<Case> read_all(const ValidateOptions& options, const Solvers& solver
 /// Which sizes pins are of, and which scenes the published results.
 void check_publishable(const ValidateOptions& options) {
     if (!options.publish.empty() && !options.backend.empty())
-        throw BadInput("--publish takes the scenes as they are, without --backend: the tests compare them so");
+        throw BadInput("--publish runs the scenes unchanged, as the tests compare them: leave out --backend");
     if (options.compare.empty()) return;
-    if (options.size != Size::ci) throw BadInput("--compare takes the ci size, whose numbers are published beside those of full size");
-    if (options.steps > 0) throw BadInput("--compare takes runs to their end, without --steps");
-    if (!options.backend.empty()) throw BadInput("--compare takes the scenes as they are, without --backend");
+    if (options.size != Size::ci) throw BadInput("--compare requires the ci size, whose values are published beside those of full size");
+    if (options.steps > 0) throw BadInput("--compare runs every case to its end: leave out --steps");
+    if (!options.backend.empty()) throw BadInput("--compare runs the scenes unchanged: leave out --backend");
 }
 
 /// Whether nothing that is published has moved.
@@ -97,7 +97,7 @@ bool write_outputs(const CaseResult& result, const std::filesystem::path& out) {
 std::string cut_runs(const CaseResult& result) {
     std::size_t runs = 0;
     for (const auto& v : result.variants) runs += v.runs.size();
-    return fmt::format("{}: {} runs of at most {} steps, not judged", result.plan.name, runs, *result.plan.cut);
+    return fmt::format("{}: {} runs of at most {} steps, no claim evaluated", result.plan.name, runs, *result.plan.cut);
 }
 
 /// The exit code of runs that are not judged: each must come to its end.
@@ -171,13 +171,14 @@ std::filesystem::path find_case(const std::string& name) {
 
 std::vector<std::filesystem::path> chosen_folders(const std::string& command, const std::vector<std::string>& names, bool all, bool list,
                                                   const std::function<std::vector<std::filesystem::path>()>& find) {
-    if (all && !names.empty()) throw BadInput(fmt::format("weir {} takes names or --all, not both", command));
+    if (all && !names.empty()) throw BadInput(fmt::format("weir {}: give names of cases or --all, not both", command));
     if (all || (list && names.empty())) {
         const auto found = find();
-        if (found.empty()) throw BadInput(fmt::format("nothing for weir {} in {}", command, case_root().string()));
+        if (found.empty()) throw BadInput(fmt::format("weir {}: {} contains no case for it", command, case_root().string()));
         return found;
     }
-    if (names.empty()) throw BadInput(fmt::format("weir {} needs the name of a case, or --all; --list shows what there is", command));
+    if (names.empty())
+        throw BadInput(fmt::format("weir {} requires the name of a case or --all; --list prints the available cases", command));
     std::vector<std::filesystem::path> folders;
     for (const std::string& name : names) folders.push_back(find_case(name));
     return folders;
@@ -185,7 +186,7 @@ std::vector<std::filesystem::path> chosen_folders(const std::string& command, co
 
 int validate_command(const ValidateOptions& options, const Solvers& solvers) {
     if (options.steps > 0 && !options.publish.empty())
-        throw BadInput("--steps judges nothing, so there is nothing to publish: weir validate takes --steps or --publish, not both");
+        throw BadInput("--steps evaluates no claim, so there is nothing to publish: give --steps or --publish, not both");
     check_publishable(options);
     const std::vector<Case> cases = read_all(options, solvers);
     if (options.list) return list_cases(cases);
@@ -222,10 +223,10 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
     const auto claims = claimed(verdicts);
     std::size_t held = 0;
     for (const auto& verdict : claims) held += verdict["pass"].get<bool>() ? 1 : 0;
-    fmt::print("{} of {} claims hold, in {} cases", held, claims.size(), results.size());
-    if (const std::size_t open = verdicts.size() - claims.size(); open > 0) fmt::print("; {} asked and not reached", open);
+    fmt::print("{} of {} claims pass, in {} cases", held, claims.size(), results.size());
+    if (const std::size_t open = verdicts.size() - claims.size(); open > 0) fmt::print("; {} open targets not met", open);
     fmt::print("\n");
-    if (undrawn > 0) std::fprintf(stderr, "%d of %zu figures could not be drawn: exit code 2\n", undrawn, results.size());
+    if (undrawn > 0) std::fprintf(stderr, "%d of %zu plots could not be drawn: exit code 2\n", undrawn, results.size());
     return bad || undrawn > 0 ? exit_bad_input : passed ? exit_success : exit_claim_failed;
 }
 

@@ -78,7 +78,7 @@ void add_sweeps(std::vector<Panel>& panels, const CaseResult& result) {
         panels.push_back(std::move(panel));
         if (result.plan.kind != Kind::iterations) continue;
         panels.push_back({.title = metric + " against work",
-                          .x = {"computing time a step [ms]", true},
+                          .x = {"computing time per step [ms]", true},
                           .y = {metric + unit_label(result, metric), error},
                           .curves = over_runs(result, metric, milliseconds)});
     }
@@ -135,8 +135,9 @@ void add_histories(std::vector<Panel>& panels, const CaseResult& result) {
 
 /// Measured and bound of each claim, one above the other.
 Panel claims(const CaseResult& result) {
-    Panel panel{
-        .title = "claims: measured and bound", .x = {"claim, in the order of the table"}, .y = {"magnitude, each in its own unit", true}};
+    Panel panel{.title = "claims: measured value and bound",
+                .x = {"claim, in the order of the table"},
+                .y = {"magnitude (unit of each claim)", true}};
     Curve measured{.label = "measured", .points = true}, bound{.label = "bound", .points = true};
     real number = 0;
     for (const auto& v : result.variants)

@@ -54,13 +54,14 @@ bool same_number(real a, real b) {
 std::string moved_text(const std::string& name, real published, real now) {
     const bool both = std::isfinite(published) && std::isfinite(now) && published != 0;
     const std::string by = both ? fmt::format(" by {:.2g}%", 100 * std::abs(now - published) / std::abs(published)) : "";
-    return fmt::format("{} moved{}: {:.9g} published, {:.9g} now", name, by, published, now);
+    return fmt::format("{} changed{}: {:.9g} published, {:.9g} now", name, by, published, now);
 }
 
 std::string rounds_otherwise(const json& pins) {
     const std::string here = output::this_machine().rounding, there = text_at(pins, "rounding");
     if (here == there) return "";
-    return fmt::format("their numbers are of {}; this is {}, which rounds otherwise", there.empty() ? "an unnamed machine" : there, here);
+    return fmt::format("their values were computed on {}; this machine is {}, whose rounding differs",
+                       there.empty() ? "an unnamed machine" : there, here);
 }
 
 Comparison compare_numbers(const Numbers& now, const json& pins) {
@@ -79,7 +80,7 @@ Comparison compare_numbers(const Numbers& now, const json& pins) {
             c.moved.push_back(moved_text(name, number_of(*at), x));
     }
     for (const auto& [name, x] : pinned->items())
-        if (!now.count(name)) c.moved.push_back(fmt::format("{} is published and no longer measured", name));
+        if (!now.count(name)) c.moved.push_back(fmt::format("{} is published but no longer measured", name));
     if (const std::string why = rounds_otherwise(pins); !why.empty())
         c.not_compared = fmt::format("{} ({} of {} differ)", why, c.moved.size(), pinned->size()), c.moved.clear();
     return c;

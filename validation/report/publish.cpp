@@ -39,7 +39,7 @@ std::string row(const json& v) {
     const std::string name = text(v, "case");
     std::string why = text(v, "why");
     const bool only_asked = !text(v, "not_reached").empty();
-    if (only_asked) why += " **Not reached:** " + text(v, "not_reached");
+    if (only_asked) why += " **Open target, not met:** " + text(v, "not_reached");
     if (!text(v, "note").empty()) why += " **" + text(v, "note") + "**";
     return fmt::format("| {} | {} | {} | {} | {} | {} | [svg](svg/{}.svg) | `{}` |\n",
                        only_asked               ? "asked"
@@ -52,13 +52,13 @@ std::string row(const json& v) {
 std::string section(const std::vector<const json*>& claims) {
     const json& first = *claims.front();
     const std::string name = text(first, "case");
-    std::string s = fmt::format("### {}\n\n{}\n\n*Blind to:* {}\n\n", name, text(first, "question"), text(first, "blind_to"));
+    std::string s = fmt::format("### {}\n\n{}\n\n*Not covered:* {}\n\n", name, text(first, "question"), text(first, "blind_to"));
     if (!text(first, "source").empty()) s += fmt::format("*Compared with:* {}\n\n", text(first, "source"));
-    s += "| | claim | measured | bound | why | seconds | figure | frames |\n|---|---|---|---|---|---|---|---|\n";
+    s += "| | claim | measured | bound | rationale | seconds | plot | frames |\n|---|---|---|---|---|---|---|---|\n";
     for (const json* v : claims) s += row(*v);
     s += fmt::format(
-        "\n![{0}](svg/{0}.svg)\n\nEvery number: [csv/{0}.csv](csv/{0}.csv). Measured at size {1}, commit {2}{4}, on {3}: "
-        "`./weir.sh validate {0} --size {1}`\n\n",
+        "\n![{0}](svg/{0}.svg)\n\nAll values: [csv/{0}.csv](csv/{0}.csv). Measured at size {1}, commit {2}{4}, on {3}: `./weir.sh validate "
+        "{0} --size {1}`\n\n",
         name, text(first, "size"), text(first, "commit"), text(first, "machine"), first.value("pinned", false) ? " (unchanged since)" : "");
     return s;
 }
@@ -66,9 +66,7 @@ std::string section(const std::vector<const json*>& claims) {
 /// What was asked of a case and is not met stands first, with its figure.
 std::string not_reached_table(const json& bounds) {
     if (bounds.empty()) return "";
-    std::string s =
-        "## Asked and not reached\n\n| case | bound | asked | measured | why it is asked | why it is not met "
-        "|\n|---|---|---|---|---|---|\n";
+    std::string s = "## Open targets\n\n| case | claim | target | measured | rationale | reason not met |\n|---|---|---|---|---|---|\n";
     for (const json& v : bounds)
         s += fmt::format("| {0} | {1} | {2} | {3} | {4} | {5} |\n", text(v, "case"), cell(text(v, "claim")), cell(text(v, "bound_text")),
                          number(v, "measured", "{:.4g}"), cell(text(v, "why")), cell(text(v, "not_reached")));
@@ -103,15 +101,15 @@ std::string index_markdown(const json& verdicts) {
     const json claims = claimed(verdicts);
     for (const json& v : claims) passed += v.value("pass", false) ? 1 : 0;
     std::string s = "# Results\n\nThis page is written by `weir validate --publish`; nothing in it is typed by hand.\n\n";
-    s += fmt::format("**{} of {} claims hold, in {} cases.**\n\n", passed, claims.size(), by_case.size());
-    s += "The tests run every case at its small size and compare its numbers with those that were published with the page: one that moved "
-         "fails.\n\n";
+    s += fmt::format("**{} of {} claims pass, in {} cases.**\n\n", passed, claims.size(), by_case.size());
+    s +=
+        "The tests run every case at its small size and compare its values with those published with this page: a changed value fails.\n\n";
     if (const auto unpinned = unpinned_cases(verdicts); !unpinned.empty())
-        s += fmt::format("Not compared with the code since they were measured: {}.\n\n", fmt::join(unpinned, ", "));
+        s += fmt::format("Not verified against the current code: {}.\n\n", fmt::join(unpinned, ", "));
     s += not_reached_table(asked(verdicts));
     const std::pair<const char*, std::set<std::string>> parts[] = {
         {"Verification: are the equations solved right?", {"exact", "convergence"}},
-        {"Accuracy against the work of the solver", {"iterations"}},
+        {"Accuracy against solver work", {"iterations"}},
         {"Validation: are they the right equations?", {"benchmark"}},
     };
     for (const auto& [title, kinds] : parts) {

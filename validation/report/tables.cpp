@@ -54,7 +54,7 @@ std::string claims_table(const CaseResult& result) {
     for (const Verdict* v : all) {
         s += fmt::format("  {:5}  {:{}}  {:>11.4g}  {:22}  {:>8.2f}  {}\n", v->word(), claim_of(*v), width, v->measured, v->bound(),
                          v->seconds, v->why);
-        if (!v->not_reached.empty()) s += fmt::format("         asked and not reached: {}\n", v->not_reached);
+        if (!v->not_reached.empty()) s += fmt::format("         open target, not met: {}\n", v->not_reached);
         if (!v->note.empty()) s += fmt::format("         {}\n", v->note);
     }
     return s;
@@ -68,7 +68,7 @@ std::string untold_failures(const CaseResult& result) {
             if (!run.failure || std::any_of(v.verdicts.begin(), v.verdicts.end(), tells)) continue;
             s += fmt::format("{}{}{}{}: {}: {}\n", result.plan.name, v.plan.name.empty() ? "" : ", ", v.plan.name,
                              v.plan.sweep ? fmt::format(" at {} = {}", v.plan.sweep->key, run.label) : "",
-                             run.bad_input ? "refused" : "came to no end", *run.failure);
+                             run.bad_input ? "refused" : "did not finish", *run.failure);
         }
     return s;
 }

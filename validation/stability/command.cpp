@@ -95,7 +95,7 @@ void publish_limits(const std::vector<json>& studies, const std::filesystem::pat
 
 int stability_command(const StabilityOptions& options, const Solvers& solvers) {
     if (options.steps > 0 && (!options.floors || !options.publish.empty()))
-        throw BadInput("--steps judges nothing: weir stability takes it with --floors, and without --publish");
+        throw BadInput("--steps evaluates no limit: give it together with --floors and without --publish");
     const std::vector<StressStudy> studies = prepared(options, solvers);
     if (options.list) {
         for (const StressStudy& study : studies)

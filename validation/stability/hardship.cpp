@@ -260,7 +260,7 @@ real value_of(const std::string& name, const Simulation& simulation, const StepR
     for (const Integral& i : simulation.solver().integrals())
         if (i.name == name) return i.value;
     if (const auto value = counted(name, simulation, report)) return *value;
-    throw BadInput(fmt::format("no integral or step report is called \"{}\"", name));
+    throw BadInput(fmt::format("there is no integral or value of a step report named \"{}\"", name));
 }
 
 void Hardship::start(const Simulation& simulation) {

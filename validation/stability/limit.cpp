@@ -91,10 +91,11 @@ std::string_view name(AxisKind kind) { return kind == AxisKind::limit ? "limit" 
 
 std::string Limit::doubt() const {
     if (!climbed) return {};
-    if (stress.asked && last_stable && *last_stable >= *stress.asked) return "what is listed as asked and not reached holds";
-    if (first_unstable && stress.kind == AxisKind::units) return "rungs that are dimensionally similar do not all hold";
-    if (first_unstable && !stress.unbroken.empty()) return "it breaks, though it is said that nothing can";
-    if (!first_unstable && stress.kind == AxisKind::limit && stress.unbroken.empty()) return "it ends before anything breaks";
+    if (stress.asked && last_stable && *last_stable >= *stress.asked) return "the open target is met: list it as a floor";
+    if (first_unstable && stress.kind == AxisKind::units) return "dimensionally similar parameter values do not all pass";
+    if (first_unstable && !stress.unbroken.empty()) return "it fails, although the study states that it cannot";
+    if (!first_unstable && stress.kind == AxisKind::limit && stress.unbroken.empty())
+        return "no failure up to the highest value: raise \"high\", or give the reason in \"unbroken\"";
     return {};
 }
 
@@ -143,7 +144,7 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
     Hardship hardship(stress.proof, value);
     const auto prove = [&](bool at_start) {
         if (const std::string what = hardship.missing(at_start); !what.empty())
-            throw BadInput(fmt::format("axis \"{}\"{}{} at {:g} is not as hard as it says: {}", stress.name,
+            throw BadInput(fmt::format("axis \"{}\"{}{} at {:g} does not meet its stated difficulty: {}", stress.name,
                                        stress.method.empty() ? "" : " of ", stress.method, value, what));
     };
     hardship.start(*simulation), prove(true);

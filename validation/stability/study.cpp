@@ -30,28 +30,28 @@ Key methods_of_key() { return {.name = "methods", .type = Type::texts, .doc = "O
 
 Key watch_key() {
     return tables(
-        "watch", "What must hold after every step.",
+        "watch", "Invariants, checked after every step.",
         {text("series", "An integral, or divergence, density_error, iterations, dt; or a sum or a difference of two, a+b, a-b.", true),
-         text("why", "Why it must hold.", true),
+         text("why", "Rationale.", true),
          {.name = "at_most", .type = Type::number, .doc = "value <= this"},
          {.name = "at_least", .type = Type::number, .doc = "value >= this"},
          {.name = "power",
           .type = Type::number,
-          .doc = "at_most and at_least are for a key of 1, and grow with this power of it.",
+          .doc = "at_most and at_least apply at a key of 1 and scale with this power of the key.",
           .fallback = 0.0},
          positive("drift", "|value - first| / |first| <= this"),
          methods_of_key(),
-         positive("never_rises", "No step raises the value by more than this part of the largest.")});
+         positive("never_rises", "No step raises the value by more than this fraction of the largest.")});
 }
 
 Key proof_key() {
     return tables(
-        "proof", "That the run is as hard as its axis says: at each value, or the study is in error.",
-        {text("quantity", "An integral, a number of the step's report, or what is counted: wet_cells, film, gap, pockets, ...", true),
-         text("why", "What it proves.", true),
+        "proof", "Evidence that the run is as difficult as its axis states, checked at each value; otherwise the study is invalid.",
+        {text("quantity", "An integral, a value of the step's report, or a count: wet_cells, film, gap, pockets, ...", true),
+         text("why", "What it demonstrates.", true),
          {.name = "at_least", .type = Type::number, .doc = "value >= this"},
          {.name = "at_most", .type = Type::number, .doc = "value <= this"},
-         {.name = "power", .type = Type::number, .doc = "Both are for a key of 1, and grow with this power of it.", .fallback = 0.0},
+         {.name = "power", .type = Type::number, .doc = "Both apply at a key of 1 and scale with this power of the key.", .fallback = 0.0},
          {.name = "when",
           .type = Type::choice,
           .doc = "Before the first step; the largest of the run; at its end.",
@@ -62,8 +62,7 @@ Key proof_key() {
 }
 
 Key unbroken_key() {
-    return tables("unbroken", "Of a limit that is not reached: why nothing can break.",
-                  {text("why", "The reason.", true), methods_of_key()});
+    return tables("unbroken", "For a limit that is not reached: why it cannot fail.", {text("why", "The reason.", true), methods_of_key()});
 }
 
 Key steps_key() { return {.name = "steps", .type = Type::integer, .doc = "Longest run.", .min = 1}; }
@@ -71,27 +70,27 @@ Key steps_key() { return {.name = "steps", .type = Type::integer, .doc = "Longes
 std::vector<Key> axis_keys() {
     std::vector<Key> axis = variant_keys();
     for (Key k : {text("name", "Its name.", true),
-                  text("key", "The key of the scene that is raised; absent where changes hold the value as <a>, <a^p> or <a^p round>."),
-                  positive("low", "Where it begins.", true),
-                  positive("high", "How far it is tried.", true),
+                  text("key", "The scene key that is raised; absent where changes contain the value as <a>, <a^p> or <a^p round>."),
+                  positive("low", "First value.", true),
+                  positive("high", "Last value.", true),
                   {.name = "kind",
                   .type = Type::choice,
-                  .doc = "limit: pushed until something breaks; units: dimensionally similar, so a check of units; guard: a check of what "
+                  .doc = "limit: raised until an invariant fails; units: dimensionally similar, a check of units; guard: a check of what "
                          "takes over or refuses.",
                   .required = true,
                   .choices = {"limit", "units", "guard"}},
-                  text("hard_because", "Why this is hard.", true),
+                  text("hard_because", "Difficulty.", true),
                   proof_key(),
                   unbroken_key(),
-                  positive("theory", "The limit that theory gives."),
-                  text("theory_source", "Where that limit comes from."),
-                  positive("floor", "The least that must be stable."),
-                  text("floor_why", "Why so much is asked."),
-                  positive("asked", "What was asked for beyond the floor and is not reached: it is listed, and an error once it holds."),
-                  text("not_reached", "Why it is not reached."),
+                  positive("theory", "Theoretical limit."),
+                  text("theory_source", "Source of that limit."),
+                  positive("floor", "Guaranteed range: the smallest value up to which runs must be stable."),
+                  text("floor_why", "Rationale of the guaranteed range."),
+                  positive("asked", "Open target beyond the floor, not met: it is listed, and an error once it is met."),
+                  text("not_reached", "Reason why it is not met."),
                   {.name = "nested",
                   .type = Type::flag,
-                  .doc = "A run at one value contains those at all lesser ones (steps, time): the end is tried first.",
+                  .doc = "A run at one value includes those at all smaller ones (steps, time): the last value is tried first.",
                   .fallback = false},
                   steps_key(),
                   methods_of_key(),
@@ -113,7 +112,7 @@ std::vector<Key> map_keys() {
     };
     std::vector<Key> map = variant_keys();
     for (Key k : {text("name", "Its name.", true), values("x", "From left to right."), values("y", "From the bottom to the top."),
-                  text("hard_because", "Why this is hard.", true), steps_key(), methods_of_key(), watch_key()})
+                  text("hard_because", "Difficulty.", true), steps_key(), methods_of_key(), watch_key()})
         map.push_back(std::move(k));
     return map;
 }
@@ -121,11 +120,11 @@ std::vector<Key> map_keys() {
 std::vector<Key> make_keys() {
     std::vector<Key> method = variant_keys();
     method.insert(method.begin(), text("name", "Its name.", true));
-    std::vector<Key> keys = {text("question", "What the study asks.", true),
+    std::vector<Key> keys = {text("question", "Question of the study.", true),
                              {.name = "steps", .type = Type::integer, .doc = "Longest run.", .fallback = std::int64_t{2000}, .min = 1},
                              watch_key(),
                              tables("methods", "Each axis is tried with each of these.", method),
-                             tables("axes", "What is raised.", axis_keys(), true),
+                             tables("axes", "Parameters that are raised.", axis_keys(), true),
                              tables("maps", "Pairs of keys, every value of one with every value of the other.", map_keys())};
     for (const Key& k : variant_keys()) keys.push_back(k);
     return keys;
@@ -158,14 +157,14 @@ std::vector<Proof> proofs(const Table& axis, const std::string& method, VariantR
             reader.problem(p.place("quantity"), fmt::format("\"{}\" needs one of: at_least, at_most", list.back().quantity));
     }
     if (list.empty())
-        reader.problem(axis.place("name"),
-                       fmt::format("\"{}\" proves nothing of its hardship{}{}", axis.text("name"), method.empty() ? "" : " for ", method));
+        reader.problem(axis.place("name"), fmt::format("\"{}\" gives no evidence of its difficulty{}{}", axis.text("name"),
+                                                       method.empty() ? "" : " for ", method));
     return list;
 }
 
 std::string why_unbroken(const Table& axis, const std::string& method, AxisKind kind, VariantReader& reader) {
     for (const Table& u : axis.tables("unbroken")) {
-        if (kind != AxisKind::limit) reader.problem(u.place("why"), "only an axis of kind \"limit\" says why it is not reached");
+        if (kind != AxisKind::limit) reader.problem(u.place("why"), "only an axis of kind \"limit\" may state why it is not reached");
         if (is_for(u, method)) return reader.said(u, "why");
     }
     return {};
@@ -212,7 +211,7 @@ Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader
     if (s.low >= s.high) reader.problem(axis.place("low"), "\"low\" must be less than \"high\"");
     if (s.floor && s.floor_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
     if (s.asked && s.not_reached.empty()) reader.problem(axis.place("asked"), "\"asked\" needs a \"not_reached\"");
-    if (s.asked && (!s.floor || *s.floor >= *s.asked)) reader.problem(axis.place("asked"), "\"asked\" needs a \"floor\" that is less");
+    if (s.asked && (!s.floor || *s.floor >= *s.asked)) reader.problem(axis.place("asked"), "\"asked\" needs a \"floor\" that is smaller");
     if (s.theory && s.theory_source.empty()) reader.problem(axis.place("theory"), "\"theory\" needs a \"theory_source\"");
     s.proof = proofs(axis, method.name, reader);
     s.unbroken = why_unbroken(axis, method.name, s.kind, reader);

@@ -41,14 +41,14 @@ std::string limits_table(const StressStudy& study, const std::vector<Limit>& lim
     std::size_t width = 8;
     for (const Limit& l : limits) width = std::max(width, name_of(l.stress).size());
     std::string s = fmt::format("{}: {}\n", study.name, study.question);
-    s += fmt::format("        {:{}}  {:5} {:>11} {:>8} {:>8} {:>5} {:>8}  {}\n", "axis", width, "kind", "last stable", "theory", "floor",
-                     "runs", "seconds", "what broke first");
+    s += fmt::format("        {:{}}  {:5} {:>12} {:>8} {:>10} {:>5} {:>8}  {}\n", "axis", width, "kind", "stable up to", "theory",
+                     "guaranteed", "runs", "seconds", "first failure");
     for (const Limit& l : limits) {
-        s += fmt::format("  {:4}  {:{}}  {:5} {:>11} {:>8} {:>8} {:>5} {:>8.2f}  {}", l.passes() ? "pass" : "FAIL", name_of(l.stress),
+        s += fmt::format("  {:4}  {:{}}  {:5} {:>12} {:>8} {:>10} {:>5} {:>8.2f}  {}", l.passes() ? "pass" : "FAIL", name_of(l.stress),
                          width, name(l.stress.kind), last_stable(l), number(l.stress.theory), number(l.stress.floor), l.runs, l.seconds,
                          what_broke(l));
         s += l.doubt().empty() ? "\n" : fmt::format(" ({})\n", l.doubt());
-        if (l.stress.asked) s += fmt::format("        {:.3g} asked and not reached: {}\n", *l.stress.asked, l.stress.not_reached);
+        if (l.stress.asked) s += fmt::format("        open target {:.3g}, not met: {}\n", *l.stress.asked, l.stress.not_reached);
     }
     return s;
 }
@@ -93,19 +93,19 @@ std::string key_text(const json& limit) { return text(limit, "key").empty() ? ""
 
 std::string limits_markdown(const json& study) {
     std::string s = fmt::format("## {}\n\n{}\n\n", text(study, "study"), text(study, "question"));
-    s += "| | axis | method | kind | last stable | there | theory | floor | what broke first | hard because |\n"
+    s += "| | axis | method | kind | stable up to | at the limit | theory | guaranteed | first failure | difficulty |\n"
          "|---|---|---|---|---|---|---|---|---|---|\n";
     for (const auto& l : study["limits"]) {
         std::string theory = number_cell(l, "theory");
         if (!theory.empty()) theory += fmt::format(" ({})", text(l, "theory_source"));
-        const std::string wrong = l["guarded"].get<bool>() ? text(l, "doubt") : "below its floor";
+        const std::string wrong = l["guarded"].get<bool>() ? text(l, "doubt") : "below its guaranteed range";
         s += fmt::format("| {} | {}{} | {} | {} | {} | {} | {} | {} | {} | {} |\n", wrong.empty() ? "" : "**" + wrong + "**",
                          text(l, "axis"), key_text(l), text(l, "method"), text(l, "kind"), text(l, "last_stable_text"), text(l, "hardship"),
                          theory, number_cell(l, "floor"), text(l, "broke"), text(l, "hard_because"));
     }
     if (study.contains("maps"))
         for (const auto& map : study["maps"])
-            s += fmt::format("\n![{}](svg/{})\n\n*Hard because* {}.\n", text(map, "name"), map_file(study, map), text(map, "hard_because"));
+            s += fmt::format("\n![{}](svg/{})\n\n*Difficulty:* {}.\n", text(map, "name"), map_file(study, map), text(map, "hard_because"));
     return s + fmt::format("\nCommit {}, on {}.\n\n", study.value("commit", "unknown"), study.value("machine", "unknown"));
 }
 
@@ -118,7 +118,7 @@ std::string asked_limits_markdown(const std::vector<json>& studies) {
                                     text(l, "method"), number_cell(l, "asked"), number_cell(l, "last_stable"), number_cell(l, "floor"),
                                     text(l, "not_reached"));
     if (rows.empty()) return "";
-    return "## Asked and not reached\n\n| case | axis | method | asked | last stable | floor that is guarded | why it is not reached |\n"
+    return "## Open targets\n\n| case | axis | method | target | stable up to | guaranteed range | reason not met |\n"
            "|---|---|---|---|---|---|---|\n" +
            rows + "\n";
 }
@@ -135,10 +135,9 @@ std::string all_limits_markdown(const std::vector<json>& studies) {
         }
     std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::string s =
-        "## All limits, by solver\n\nKinds: a limit is pushed until something breaks; the rungs of units are dimensionally similar, so "
-        "that only "
-        "an absolute number in the code could break them; a guard is checked, which takes over or refuses.\n\n"
-        "| solver | axis | method | kind | last stable | theory | what broke first | case |\n|---|---|---|---|---|---|---|---|\n";
+        "## All limits, by solver\n\nKinds: a limit is raised until an invariant fails. Values of kind units are dimensionally similar: "
+        "only an absolute number in the code could make one fail. A guard is checked for taking over or refusing.\n\n"
+        "| solver | axis | method | kind | stable up to | theory | first failure | case |\n|---|---|---|---|---|---|---|---|\n";
     for (const auto& row : rows) s += row.second;
     return s + "\n";
 }

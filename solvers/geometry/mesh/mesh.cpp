@@ -24,8 +24,8 @@ void require_size(const Triangles& mesh, const std::string& name) {
         real least = infinity, most = -infinity;
         for (const Vec<3>& x : mesh.points) least = std::min(least, x[a]), most = std::max(most, x[a]);
         if (least < -largest || most > largest)
-            throw BadInput(fmt::format("{}: it reaches from {:.4g} to {:.4g} along {}; at most {:g} either way is read", name, least, most,
-                                       "xyz"[a], largest));
+            throw BadInput(fmt::format("{}: it extends from {:.4g} to {:.4g} along {}; coordinates up to {:g} in magnitude are supported",
+                                       name, least, most, "xyz"[a], largest));
         longest = std::max(longest, most - least);
     }
     if (longest < smallest && !mesh.points.empty())
@@ -146,7 +146,7 @@ void require(const scene::Scene& scene, const scene::Table& table, const std::st
 }  // namespace
 
 PosedMesh make_mesh(const scene::Table& table) {
-    if (table.text("file").empty()) throw BadInput("an empty text names no file; known endings: .obj, .ply, .stl");
+    if (table.text("file").empty()) throw BadInput("a file name must not be empty; known endings: .obj, .ply, .stl");
     PosedMesh posed;
     posed.mesh = load(table.file("file"), static_cast<int>(table.integer("resolution")));
     posed.scale = table.number("scale");

@@ -149,7 +149,7 @@ void MeshSampler::find_inside(const std::string& name) {
                     const Vec<3> x = node(I);
                     char text[160];
                     std::snprintf(text, sizeof text, ": the surface %s itself: around [%.4g, %.4g, %.4g] it winds %d times",
-                                  times > 1 ? "overlaps" : "is turned inside out against", x[0], x[1], x[2], times);
+                                  times > 1 ? "overlaps" : "is oriented opposite to", x[0], x[1], x[2], times);
                     throw BadInput(name + text);
                 }
                 const std::size_t at = linear(I);

@@ -46,7 +46,7 @@ TEST("devices, pipes that nobody writes to, folders, looped links and empty name
     EXPECT_TRUE(has(refusal(pipe), "this is a device or a pipe")) << refusal(pipe);
     EXPECT_TRUE(has(refusal(folder.path()), "this is a folder")) << refusal(folder.path());
     EXPECT_TRUE(has(refusal(loop), "Too many levels of symbolic links")) << refusal(loop);
-    EXPECT_TRUE(has(refusal(""), "an empty text names no file")) << refusal("");
+    EXPECT_TRUE(has(refusal(""), "a file name must not be empty")) << refusal("");
 }
 
 TEST("a file that says it is empty and is not is read to its end, or refused at the limit") {

@@ -213,12 +213,13 @@ TEST("what columns cannot do is refused by name") {
     };
     const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
     EXPECT_EQ(told(""), "accepted");
-    EXPECT_TRUE(has(told("effects.rain.rate = 0.1\n"), "no currents and keep their still depth"));
-    EXPECT_TRUE(has(told("initial.velocity = { name = \"constant\", value = [1, 0] }\n"), "have no currents"));
-    EXPECT_TRUE(has(told("sides.x_min = { kind = \"level\", level = 0.1 }\n"), "nothing flows in"));
-    EXPECT_TRUE(has(told("floats = [ { size = [0.2, 0.2], at = [0.5, 0], density = 1.5 } ]\n"), "what is as dense as water sinks"));
+    EXPECT_TRUE(has(told("effects.rain.rate = 0.1\n"), "has no currents and keeps the still depth"));
+    EXPECT_TRUE(has(told("initial.velocity = { name = \"constant\", value = [1, 0] }\n"), "scheme.model = \"columns\" has no currents"));
+    EXPECT_TRUE(has(told("sides.x_min = { kind = \"level\", level = 0.1 }\n"), "has no inflow"));
     EXPECT_TRUE(
-        has(told("floats = [ { size = [0.2, 0.2], at = [0.5, 0], motion = { kind = \"rotation\", rate = 1 } } ]\n"), "do not turn"));
+        has(told("floats = [ { size = [0.2, 0.2], at = [0.5, 0], density = 1.5 } ]\n"), "an object at least as dense as water sinks"));
+    EXPECT_TRUE(
+        has(told("floats = [ { size = [0.2, 0.2], at = [0.5, 0], motion = { kind = \"rotation\", rate = 1 } } ]\n"), "do not rotate"));
 }
 
 TEST("a column that runs dry ends the run with a reason") {

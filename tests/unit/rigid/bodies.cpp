@@ -65,10 +65,10 @@ TEST("a body that begins through a wall, in a solid or in another body is refuse
         EXPECT_NE(text.find(words), std::string::npos) << lines << '\n' << text;
     };
     const std::string ball = "bodies = [ { name = \"float\", shape = \"sphere\", radius = 0.5, density = 1.0, centre = ";
-    says(2, ball + "[1.0, 3.6] } ]", "bodies[0] (\"float\") begins 0.1 m through the wall y_max at y = 4 m");
-    says(2, ball + "[1.0, 3.6], fixed = [\"x\", \"y\"] } ]", "0.1 m through the wall");
-    says(2, ball + "[0.3, 1.0] } ]", "begins 0.2 m through the wall x_min at x = 0 m");
-    says(3, ball + "[1.0, 1.0, 3.75] } ]", "begins 0.25 m through the wall z_max at z = 4 m");
+    says(2, ball + "[1.0, 3.6] } ]", "bodies[0] (\"float\") overlaps the wall y_max at y = 4 m by 0.1 m");
+    says(2, ball + "[1.0, 3.6], fixed = [\"x\", \"y\"] } ]", "overlaps the wall y_max at y = 4 m by 0.1 m");
+    says(2, ball + "[0.3, 1.0] } ]", "overlaps the wall x_min at x = 0 m by 0.2 m");
+    says(3, ball + "[1.0, 1.0, 3.75] } ]", "overlaps the wall z_max at z = 4 m by 0.25 m");
     says(2, ball + "[0.5, 3.5] } ]", "accepted");                                       // it touches two walls
     says(2, ball + "[1.0, 3.5004] } ]", "accepted");                                    // within a thousandth of its radius
     says(2, ball + "[1.0, 3.6], fixed = [\"x\", \"y\", \"turning\"] } ]", "accepted");  // nothing can push it
@@ -88,7 +88,7 @@ TEST("a body that begins through a wall, in a solid or in another body is refuse
     says(2,
          "bodies = [ { shape = \"box\", min = [1.0, 1.0], max = [3.0, 1.01], density = 1.0 }, "
          "{ shape = \"box\", min = [1.3, 0.2], max = [1.31, 3.0], density = 1.0 } ]",
-         "bodies[0] and bodies[1] begin in the same place: 0.009");
+         "bodies[0] and bodies[1] overlap by 0.009");
     // A solid counts where it is at t = 0, turned as its motion says.
     says(2,
          ball +
@@ -99,7 +99,7 @@ TEST("a body that begins through a wall, in a solid or in another body is refuse
          ball +
              "[2.0, 1.1] } ]\nsolids = [ { shape = \"box\", min = [0.5, 2.9], max = [3.5, 3.1], motion = { kind = \"keyframes\", centre = "
              "[2.0, 3.0], frames = [ { t = 0.0, angle = 1.5707963 }, { t = 1.0 } ] } } ]",
-         "inside solids[0]");
+         "overlaps solids[0] by");
 }
 
 TEST("what cannot be a body is refused, with the reason") {
@@ -119,7 +119,7 @@ TEST("what cannot be a body is refused, with the reason") {
          "bodies = [ { shape = \"sphere\", centre = [1.0, 1.0], radius = 0.5, density = 1.0 }, { shape = \"sphere\", centre = [1.4, 1.0], "
          "radius "
          "= 0.5, density = 1.0 } ]",
-         "in the same place");
+         "overlap by");
     says(2, "grid.periodic = [\"x\"]\nbodies = [ { shape = \"sphere\", centre = [1.0, 1.0], radius = 0.5, density = 1.0 } ]", "periodic");
     says(2, "bodies = [ { shape = \"box\", min = [1.0, 1.0], max = [0.5, 2.0], density = 1.0 } ]", "not above its min");
 }

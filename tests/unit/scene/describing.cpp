@@ -64,7 +64,7 @@ TEST("an unknown topic names the nearest") {
         (void)about("gravty");
         FAIL();
     } catch (const BadInput& e) {
-        EXPECT_STREQ(e.what(), "nothing is called \"gravty\"; did you mean \"gravity\"?");
+        EXPECT_STREQ(e.what(), "unknown name \"gravty\"; did you mean \"gravity\"?");
     }
 }
 

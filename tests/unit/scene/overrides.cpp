@@ -65,7 +65,7 @@ TEST("[:] of a list says how many of its entries stay") {
     EXPECT_EQ(left.root().tables("solids")[1].number("radius"), 2);
     EXPECT_TRUE(with({{"solids[:]", "0"}}).root().tables("solids").empty());
     EXPECT_EQ(refusal({"solids[:]", "2"}),
-              "--set solids[:]=2: solids[:] is how many entries of solids stay, from 0 to 1, and this is the integer 2\n"
+              "--set solids[:]=2: solids[:] is the number of entries of solids to keep, from 0 to 1; found the integer 2\n"
               "      | solids[:]=2\n"
               "      |       ^");
     EXPECT_EQ(refusal({"solids[:].radius", "1"}),

@@ -35,7 +35,7 @@ TEST("shapes have extent, also inside unions and differences") {
     EXPECT_EQ(refused("solids = [{ shape = \"box\", min = [0, 1], max = [1, 0.5] }]\n"),
               List{"solids[0].max is not above its min along y: 0.5 m against 1 m"});
     EXPECT_EQ(refused("solids = [{ shape = \"union\", of = [{ shape = \"plane\", point = [0, 0], normal = [0, 0] }] }]\n"),
-              List{"solids[0].of[0].normal is zero; it must point somewhere"});
+              List{"solids[0].of[0].normal is the zero vector; it must have a direction"});
     EXPECT_EQ(refused("solids = [{ shape = \"difference\", from = { shape = \"cylinder\", from = [0, 0], to = [0, 0], radius = 1 }, minus "
                       "= [{ shape = "
                       "\"sphere\", centre = [0, 0], radius = 1 }] }]\n"),
@@ -55,9 +55,9 @@ TEST("liquid and emitters outside the domain are refused, solids there are not")
 TEST("moments of a motion stand in order, and an axis has a direction") {
     const std::string sphere = "solids = [{ shape = \"sphere\", centre = [0, 0, 0], radius = 1, motion = { ";
     EXPECT_EQ(refused(sphere + "kind = \"keyframes\", frames = [{ t = 0 }, { t = 2 }, { t = 2 }] } }]\n", "3"),
-              List{"solids[0].motion.frames[2].t is 2 s, not after 2 s of the frame before"});
+              List{"solids[0].motion.frames[2].t is 2 s; it must be after 2 s of the previous keyframe"});
     EXPECT_EQ(refused(sphere + "kind = \"rotation\", rate = 1, axis = [0, 0, 0] } }]\n", "3"),
-              List{"solids[0].motion.axis is zero; it must point somewhere"});
+              List{"solids[0].motion.axis is the zero vector; it must have a direction"});
 }
 
 TEST("a wall of the domain moves along itself") {
@@ -69,7 +69,8 @@ TEST("a wall of the domain moves along itself") {
 TEST("probes have names of their own that can name files, and lie in the domain") {
     EXPECT_EQ(refused("probes = [{ name = \"a\", kind = \"front\" }, { name = \"a\", kind = \"front\" }]\n"),
               List{"two probes have the name \"a\"; each writes its own file"});
-    EXPECT_EQ(refused("probes = [{ name = \"../a\", kind = \"front\" }]\n"), List{"probes[0].name is \"../a\"; it names a file"});
+    EXPECT_EQ(refused("probes = [{ name = \"../a\", kind = \"front\" }]\n"),
+              List{"probes[0].name is \"../a\", which is not a valid file name"});
     EXPECT_EQ(refused("probes = [{ name = \"a\", kind = \"point\", field = \"pressure\", at = [0.5, 1.5] }]\n"),
               List{"probes[0].at lies outside the domain"});
 }
@@ -87,7 +88,7 @@ TEST("a grid fits into the machine and into the precision of its numbers") {
     EXPECT_EQ(cells("grid = { cells = [100000, 100000], size = [1, 1] }"),
               "grid.cells makes 1e+10 cells; at most 2147483647 can be numbered");
     EXPECT_EQ(cells("grid = { cells = [10, 10], size = [1, 1e-9], origin = [0, 1e6] }"),
-              "cells of 1e-10 m along y cannot be told apart at y = 1e+06 m in double precision");
+              "cells of 1e-10 m along y cannot be distinguished at y = 1e+06 m in double precision");
     EXPECT_EQ(cells("grid = { cells = [10, 10], size = [1, 1e-9] }"), "");
 }
 

@@ -68,7 +68,7 @@ TEST("a volume that grows by what was poured in is explained; more than that is 
     EXPECT_NEAR(*run.quantities[0].unexplained, 0.02 / 0.2, 1e-12);
     EXPECT_NEAR(*run.quantities[0].inflow, 0.1, 1e-12);
     ASSERT_EQ(run.warnings.size(), 1u);
-    EXPECT_NE(run.warnings[0].find("10% above what came in and went out leaves"), std::string::npos) << run.warnings[0];
+    EXPECT_NE(run.warnings[0].find("10% above the value expected from inflow and outflow"), std::string::npos) << run.warnings[0];
 }
 
 TEST("the bound is one per cent, and what was lost between and came back is shown") {
@@ -111,7 +111,7 @@ TEST("energy above its start is warned of in a closed scene, at its highest fram
     const BalanceOfRun more = balance(grows);
     ASSERT_EQ(more.warnings.size(), 1u);
     EXPECT_NEAR(*more.quantities[0].unexplained, 0.2, 0.001);
-    EXPECT_EQ(more.warnings[0].find("the total energy rose by 20% above its start"), 0u) << more.warnings[0];
+    EXPECT_EQ(more.warnings[0].find("the total energy rose by 20% above its initial value"), 0u) << more.warnings[0];
     for (const std::string works :
          {"sides = { x_min = { kind = \"moving_wall\", velocity = [0, 1] } }\n",
           "solids = [ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.2, motion = { kind = \"constant\", velocity "

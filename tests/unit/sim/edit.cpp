@@ -124,7 +124,7 @@ TEST("over ranks nobody edits: that is refused by name before anything is touche
         const std::unique_ptr<void, void (*)(void*)> alone_again(&water, [](void*) { set_slabs(nullptr); });
         bool written = false;
         expect_in(refusal([&] { water.edit("velocity", [&](FieldEdit&) { written = true; }); }),
-                  "\"velocity\" is edited in one process only, and there are 2");
+                  "\"velocity\" is edited in one process only, and the number of ranks is 2");
         expect_in(refusal([&] { water.add_particles("markers", at, at); }),
                   "particles of the set \"markers\" are added in one process only");
         expect_in(refusal([&] { particles.remove_particles("particles", which); }), "are removed in one process only");
@@ -148,7 +148,8 @@ TEST("what cannot be written is refused, and not a bit changes") {
     const std::vector<Vec<3>> outside{{{0.5, 1.5, 0}}}, deep{{{0.5, 0.5, 0.5}}}, still{{{0, 0, 0}}};
     expect_in(refusal([&] { simulation.add_particles("markers", outside, still); }), "particle 0 has y = 1.5; the domain is [0, 1]");
     expect_in(refusal([&] { simulation.add_particles("markers", deep, still); }), "z = 0.5 in a scene of two dimensions");
-    expect_in(refusal([&] { simulation.add_particles("particles", still, still); }), "takes no particles of a set \"particles\"");
+    expect_in(refusal([&] { simulation.add_particles("particles", still, still); }),
+              "does not support adding particles of a set \"particles\"");
     const std::vector<std::size_t> far{100000};
     expect_in(refusal([&] { simulation.remove_particles("markers", far); }), "there is no particle 100000");
     EXPECT_EQ(state_of(simulation), before);
@@ -341,8 +342,10 @@ TEST("columns that are raised are counted as poured, and neither run dry nor wet
     simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][3] += 0.16; });
     EXPECT_NEAR(integral(simulation, "volume"), volume + 0.01, 1e-15);
     EXPECT_NEAR(integral(simulation, "volume_balance"), balance, 1e-15);
-    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][2] = -0.1; }); }), "do not run dry");
-    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][12] = 0.1; }); }), "wet no dry ground");
+    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][2] = -0.1; }); }),
+              "does not support drying");
+    expect_in(refusal([&] { simulation.edit("surface", [](FieldEdit& surface) { surface.data[0][12] = 0.1; }); }),
+              "does not support wetting");
     expect_in(refusal([&] { simulation.edit("velocity", [](FieldEdit& u) { u.data[0][2] = 1; }); }), "must lie in [0, 0]");
     simulation.edit("velocity", [](FieldEdit& u) { u.data[1][1] = -0.1; });
     simulation.run_until(0.1);

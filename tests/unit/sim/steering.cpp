@@ -164,10 +164,10 @@ TEST("what cannot change is refused with the reason, what is out of range as in 
         const auto said = refusal([&] { simulation.set(what); });
         EXPECT_NE(said.find(says), std::string::npos) << what.key << " = " << what.value << ": " << said;
     };
-    expect({"grid.cells", "[8, 8]"}, "grid.cells cannot change while a run goes on: the state is laid out by it");
-    expect({"liquid", "[]"}, "it is read at the start alone");
-    expect({"output.every", "0.1"}, "one series from its start to its end");
-    expect({"fluid.density", "1"}, "cannot be carried over");
+    expect({"grid.cells", "[8, 8]"}, "grid.cells cannot change during a run: the layout of the state depends on it");
+    expect({"liquid", "[]"}, "it is read only at the start");
+    expect({"output.every", "0.1"}, "one series from start to end");
+    expect({"fluid.density", "1"}, "cannot be converted");
     expect({"effects.xsph.c", "0.1"}, "effects.xsph is not named in this scene");
     expect({"effects.gravity.q", "1"}, "there is no such key; did you mean \"effects.gravity.g\"?");
     expect({"effects.gravity.g", "[0]"}, "with dim = 2 it must have 2");
@@ -182,8 +182,9 @@ TEST("changes in a file are refused where they stand: a key that cannot, a value
         parsed(cases()[3].scene + "changes = [\n" + change(0.2, "grid.cells", "[8, 8]") + ",\n" + change(0.1, "scheme.iterations", "0") +
                ",\n" + change(0.3, "time.max_dt", "true") + "\n]\n");
     });
-    for (const char* part : {"steered.toml:10:21", "the state is laid out by it", "steered.toml:11:10", "before the one above at 0.2 s",
-                             "scheme.iterations", "steered.toml:11:50", "at least 1", "steered.toml:12:44", "time.max_dt"})
+    for (const char* part :
+         {"steered.toml:10:21", "the layout of the state depends on it", "steered.toml:11:10", "before the previous one at 0.2 s",
+          "scheme.iterations", "steered.toml:11:50", "at least 1", "steered.toml:12:44", "time.max_dt"})
         EXPECT_NE(said.find(part), std::string::npos) << part << " in\n" << said;
 }
 

@@ -181,8 +181,8 @@ TEST("what the formulas do not reach is refused, with the limit") {
         }
         return std::string("nothing was refused");
     };
-    EXPECT_EQ(refusal([] { water()->state({-1, 1e5}); }), "a temperature of -1 K: temperatures are above 0 K");
-    EXPECT_EQ(refusal([] { water()->state({300, 0}); }), "a pressure of 0 Pa: pressures are above 0 Pa");
+    EXPECT_EQ(refusal([] { water()->state({-1, 1e5}); }), "a temperature of -1 K: it must be greater than 0 K");
+    EXPECT_EQ(refusal([] { water()->state({300, 0}); }), "a pressure of 0 Pa: it must be greater than 0 Pa");
     EXPECT_EQ(refusal([] { water()->state({20, 1e5}); }), "a temperature of 20 K: the formulas of water begin at 50 K");
     EXPECT_EQ(refusal([] { water()->heat_curve(3e8); }), "a pressure of 3e+08 Pa: the formulas of water end at 2.08567e+08 Pa");
     EXPECT_EQ(refusal([] { water()->temperature(Boundary::saturation, 3e7); }),

@@ -91,7 +91,7 @@ TEST("values of 'over' name folders, at either size: what is no such name, or st
         EXPECT_NE(refusal(over("values = ['a'], ci = ['a', " + value + "]")).find("7: "), std::string::npos) << value;  // read at full size
     }
     expect_refused(over("values = ['a', 'a']"), "7: two variants are called \"a\"");
-    expect_refused(head + rest + "[[variants]]\nname = \"..\"\n", "\"..\" is no name of a variant");
+    expect_refused(head + rest + "[[variants]]\nname = \"..\"\n", "\"..\" is not a valid name of a variant");
     EXPECT_EQ(refusal(over("values = ['-1.5e+3', 'cg_mic0']")).find("may have"), std::string::npos);
 }
 
@@ -99,7 +99,7 @@ TEST("a claim without a reason, and a case that says not what it is blind to, ar
     expect_refused("question = \"q\"\nkind = \"exact\"\naccept = [ { metric = \"x\", at_most = 1, why = \"w\" } ]", "blind_to");
     expect_refused(head + "sweep = { key = \"grid.cells\", values = [1, 2] }\naccept = [ { metric = \"x\", at_most = 1 } ]", "why");
     expect_refused(head + "sweep = { key = \"grid.cells\", values = [1, 2] }\naccept = [ { metric = \"x\", at_most = 1, why = \" \" } ]",
-                   "\"why\" says nothing");
+                   "\"why\" is empty");
 }
 
 TEST("unknown keys and kinds are refused with the name that was meant") {
@@ -128,14 +128,14 @@ accept = [
                                  "7: \"b\" has 2 tests, one is needed", "8: \"equals\" needs a \"tolerance\"",
                                  "9: \"within\" needs its lower bound first", "10: at = 64 is no value of the sweep at full size",
                                  "11: a grid convergence index needs three grids, or two and a \"formal_order\"",
-                                 "12: \"never_increases = false\" claims nothing"})
+                                 "12: \"never_increases = false\" makes no claim"})
         EXPECT_NE(all.find(expected), std::string::npos) << "expected: " << expected << "\ngot: " << all;
 }
 
 TEST("an order without a sweep, a case without a claim, and two variants of one name are refused") {
     expect_refused("question = \"q\"\nblind_to = \"b\"\nkind = \"exact\"\naccept = [ { metric = \"x\", order_at_least = 1, why = \"w\" } ]",
                    "an order needs a sweep of at least two values");
-    expect_refused("question = \"q\"\nblind_to = \"b\"\nkind = \"exact\"", "claims nothing");
+    expect_refused("question = \"q\"\nblind_to = \"b\"\nkind = \"exact\"", "makes no claim");
     expect_refused(head + R"(
 accept = [ { metric = "x", at_most = 1, why = "w" } ]
 variants = [ { name = "a b" }, { name = "c" }, { name = "c" } ]

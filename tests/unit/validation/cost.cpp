@@ -95,7 +95,7 @@ TEST("a study is read at the asked size; what is wrong in it is named") {
     EXPECT_EQ(ci.error, "velocity.max");
     EXPECT_NE(refusal("question = \"q\"\nerror = \"e\"\ngood_enough = 1\n").find("\"good_enough\" needs a \"why\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\nerror = \"e\"\nknown_to = 1\n").find("\"known_to\" needs a \"known_why\""), std::string::npos);
-    EXPECT_NE(refusal(head + "known_to = 3\nknown_why = \"w\"\n").find("nobody could tell"), std::string::npos);
+    EXPECT_NE(refusal(head + "known_to = 3\nknown_why = \"w\"\n").find("\"good_enough\" is below \"known_to\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n").find("error"), std::string::npos);
     EXPECT_NE(refusal(head + "methodes = 1\n").find("methods"), std::string::npos) << "the nearest name is offered";
 }
@@ -129,15 +129,16 @@ TEST("what the reference cannot tell is said, and no setting is called the most 
     mark_front(result.points, result.study);
     const auto sentences = advice(result);
     ASSERT_EQ(sentences.size(), 5u);
-    EXPECT_EQ(
-        sentences[1],
-        "Read along each method's curve at e = 0.2, in units of the time of a (at most its cheapest setting's): b at most 3, c at most "
-        "3.")
+    EXPECT_EQ(sentences[1],
+              "Interpolated along each method's curve at e = 0.2, in units of the time of a (at most that of its cheapest configuration): "
+              "b at most 3, c at most "
+              "3.")
         << "neither can be had for the price of a";
-    EXPECT_EQ(sentences[2], "6 of 6 settings run in real time, 6 of them as near to the reference as it is known itself.");
-    EXPECT_EQ(sentences[3], "a 1 is the cheapest, and as near to the reference as it is known.") << "not: a finer setting does not pay";
+    EXPECT_EQ(sentences[2], "6 of 6 configurations run in real time, 6 of them within the reference uncertainty.");
+    EXPECT_EQ(sentences[3], "a 1 is the cheapest, and within the reference uncertainty.") << "not: a finer setting does not pay";
     EXPECT_EQ(sentences[4],
-              "6 of 6 settings lie within 0.05, where this reference cannot rank them (gates differ); the cheapest of them is a 1.");
+              "6 of 6 configurations lie within the reference uncertainty of 0.05, where they cannot be ranked (gates differ); the "
+              "cheapest of them is a 1.");
 }
 
 TEST("the sentences name the cheapest setting that is good enough, the best in real time, the price of accuracy and the failures") {
@@ -149,15 +150,16 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
     ASSERT_EQ(sentences.size(), 5u);
     EXPECT_EQ(sentences[0], "For e <= 0.2 take fine: 33.3 ms of each 16.7 ms frame (0.5 times real time).");
     EXPECT_EQ(sentences[1],
-              "Read along each method's curve at e = 0.2, in units of the time of fine (at most its cheapest setting's): other at most 4. "
+              "Interpolated along each method's curve at e = 0.2, in units of the time of fine (at most that of its cheapest "
+              "configuration): other at most 4. "
               "Not reached by coarse.");
     EXPECT_EQ(sentences[2],
-              "1 of 3 settings run in real time; the most accurate of them is coarse: e = 0.5, for 8.33 ms of each 16.7 ms frame.");
+              "1 of 3 configurations run in real time; the most accurate of them is coarse: e = 0.5, for 8.33 ms of each 16.7 ms frame.");
     EXPECT_EQ(sentences[3], "From coarse, the cheapest, to fine, the most accurate, the error falls 5 times for 4 times the time.");
-    EXPECT_EQ(sentences[4], "1 of 4 settings failed: see the table.");
+    EXPECT_EQ(sentences[4], "1 of 4 configurations failed: see the table.");
     result.study.good_enough = 0.01;
     EXPECT_EQ(advice(result)[0],
-              "No setting reaches e = 0.01; fine comes nearest with 0.1, for 33.3 ms of each 16.7 ms frame (0.5 times real time).");
+              "No configuration reaches e = 0.01; the nearest is fine with 0.1, for 33.3 ms of each 16.7 ms frame (0.5 times real time).");
 }
 
 TEST("where most methods gain nothing from a dearer setting the third sentence says so") {
@@ -171,8 +173,9 @@ TEST("where most methods gain nothing from a dearer setting the third sentence s
         if (p.method == "b" && p.setting == "2") p.seconds_per_second = 15;
     mark_front(result.points, result.study);
     EXPECT_EQ(advice(result).back(),
-              "A finer setting does not pay here: the dearest of 2 of 3 methods is no more accurate than its cheapest, at 2 to 5 times the "
-              "price.");
+              "Refinement does not pay off here: for 2 of 3 methods the most expensive configuration is no more accurate than the "
+              "cheapest, at 2 to 5 times the cost."
+              "");
     result.points[1].error = 0.01;  // now most methods gain
     EXPECT_EQ(advice(result).back().substr(0, 4), "From");
 }
@@ -191,7 +194,7 @@ TEST("the command writes table, JSON, figure and page; a setting that fails stay
     EXPECT_NE(read(folder.path() / "out/study.csv").find("late"), std::string::npos);
     EXPECT_NE(read(folder.path() / "out/study.svg").find("Pareto front"), std::string::npos);
     EXPECT_NE(read(folder.path() / "page/index.md").find("| late | diverged at step 2, t = "), std::string::npos);
-    EXPECT_NE(read(folder.path() / "page/index.md").find("Compared with no reference"), std::string::npos) << "this study has none";
+    EXPECT_NE(read(folder.path() / "page/index.md").find("No reference: the error"), std::string::npos) << "this study has none";
     EXPECT_TRUE(fs::exists(folder.path() / "page/svg/study.svg"));
 }
 
@@ -210,7 +213,7 @@ TEST("errors and bytes of a published study are compared with the code: what mov
     std::ofstream(folder.path() / "page/pins/study.json") << pins.dump();
     testing::internal::CaptureStderr();
     EXPECT_EQ(cost_command(options, test::fake_kinds()), exit_claim_failed);
-    EXPECT_NE(testing::internal::GetCapturedStderr().find(first.key() + " moved by"), std::string::npos);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find(first.key() + " changed by"), std::string::npos);
 }
 
 TEST("a backend that is not here leaves its row with the reason, and the study goes on; a method may have threads of its own") {
@@ -228,7 +231,7 @@ TEST("a backend that is not here leaves its row with the reason, and the study g
     ASSERT_EQ(result.points.size(), 2u);
     EXPECT_EQ(result.points[0].threads, 3);
     EXPECT_EQ(result.points[1].failure.value_or(""), "not run: no OpenCL device here: install one");
-    EXPECT_EQ(advice(result).back(), "1 of 2 settings could not be run here: the table says why.");
+    EXPECT_EQ(advice(result).back(), "1 of 2 configurations could not be run here: the table gives the reason.");
     EXPECT_NE(cost_table(result).find("not run: no OpenCL device here: install one"), std::string::npos);
     EXPECT_EQ(notes(result).front(), "here: 3 threads.");
 }

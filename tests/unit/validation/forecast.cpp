@@ -44,7 +44,7 @@ TEST("a scene of 500^3 cells is foretold without being built, its steps as a ran
     EXPECT_GE(f.most_dt, f.least_dt);
     const std::string text = forecast_text(f, scene);
     EXPECT_NE(text.find(" steps, "), std::string::npos) << text;
-    EXPECT_NE(text.find("from small copies of the scene"), std::string::npos) << text;
+    EXPECT_NE(text.find("from coarser copies of the scene"), std::string::npos) << text;
 }
 
 // The bar is 30 per cent. The forecast and the run are measured one after the other, three times, and the median of their ratio counts: a

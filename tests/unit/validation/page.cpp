@@ -108,9 +108,9 @@ TEST("a bound that is asked for and not reached stands in a table of its own, is
     open["pinned"] = true;
     const std::string page = page_html(results_with(folder.path(), json::array({old, open})));
     EXPECT_NE(page.find("<p class=\"big pass\">1 of 1</p>"), std::string::npos);
-    EXPECT_NE(page.find("<h3 id=\"asked\">Asked and not reached</h3>"), std::string::npos);
+    EXPECT_NE(page.find("<h3 id=\"asked\">Open targets</h3>"), std::string::npos);
     EXPECT_EQ(count(page, "the floor is rough"), 2u);
-    EXPECT_NE(page.find("Not compared with the code since they were measured:</b> <a href=\"#case-tank\">"), std::string::npos);
+    EXPECT_NE(page.find("Not verified against the current code:</b> <a href=\"#case-tank\">"), std::string::npos);
     EXPECT_EQ(count(page, "<b class=\"no\">FAIL</b>"), 0u);
 }
 
@@ -118,7 +118,7 @@ TEST("texts are quoted, every claim carries its reason and blind spot, and the p
     const weir::test::TemporaryFolder folder;
     const std::string page = page_html(results_with(folder.path(), json::array({claim(true, 1, 2, "<= 2")})));
     EXPECT_NE(page.find("2 &lt; 3 &amp; so"), std::string::npos);
-    EXPECT_NE(page.find("<b>Blind to:</b> motion"), std::string::npos);
+    EXPECT_NE(page.find("<b>Not covered:</b> motion"), std::string::npos);
     EXPECT_NE(page.find("commit abc, a machine"), std::string::npos);
     EXPECT_EQ(page.find("src=\"http"), std::string::npos);
     EXPECT_EQ(page.find("href=\"http"), std::string::npos);
@@ -188,10 +188,10 @@ TEST("the README's results are written between its markers, the rest stays, and 
     EXPECT_EQ(once.substr(0, 7), "before\n");
     EXPECT_EQ(once.substr(once.size() - 7), "\nafter\n");
     EXPECT_EQ(once.find("\nold\n"), std::string::npos);
-    EXPECT_NE(once.find("| Are the equations solved right? | 1 of 2 | [1]("), std::string::npos) << once;
-    EXPECT_NE(once.find("2 limits measured, 1 of them not reached"), std::string::npos) << once;
-    EXPECT_NE(once.find("1 below the floor"), std::string::npos);
-    EXPECT_NE(once.find("1 asked for beyond the floor is not reached"), std::string::npos) << once;
+    EXPECT_NE(once.find("| Are the equations solved correctly? | 1 of 2 | [1]("), std::string::npos) << once;
+    EXPECT_NE(once.find("2 limits measured, 1 of them without a failure"), std::string::npos) << once;
+    EXPECT_NE(once.find("1 below the guaranteed range"), std::string::npos);
+    EXPECT_NE(once.find("1 open target beyond the guaranteed range is not met"), std::string::npos) << once;
     update_readme(readme, folder.path());
     EXPECT_EQ(bytes_of(readme), once);
     std::ofstream(readme) << "no markers";

@@ -31,9 +31,10 @@ TEST("what is pinned is found again to nine digits, and what moved is named with
     EXPECT_EQ(same.seconds_to_publish, 3);
     Numbers now = then;
     now["flip at 64: volume.drift"] *= 1.5, now["none"] = 7, now.erase("steps"), now["new"] = 1;
-    EXPECT_EQ(compare_numbers(now, pins).moved,
-              (std::vector<std::string>{"flip at 64: volume.drift moved by 50%: 0.333333333 published, 0.5 now", "new is not published: 1",
-                                        "none moved: nan published, 7 now", "steps is published and no longer measured"}));
+    EXPECT_EQ(
+        compare_numbers(now, pins).moved,
+        (std::vector<std::string>{"flip at 64: volume.drift changed by 50%: 0.333333333 published, 0.5 now", "new is not published: 1",
+                                  "none changed: nan published, 7 now", "steps is published but no longer measured"}));
 }
 
 TEST("numbers of another processor, and those that are not there, are not compared, and that is said") {
@@ -42,7 +43,7 @@ TEST("numbers of another processor, and those that are not there, are not compar
     const Comparison c = compare_numbers({{"steps", 2}}, pins);
     EXPECT_TRUE(c.moved.empty());
     EXPECT_NE(comparison_text("tank", "weir validate tank", c)
-                  .find("tank: not compared with the published results: their numbers are of an abacus"),
+                  .find("tank: not compared with the published results: their values were computed on an abacus"),
               std::string::npos);
     EXPECT_EQ(compare_numbers({{"steps", 2}}, nlohmann::json()).not_compared, "none are published");
     EXPECT_EQ(compare_numbers({{"steps", 2}}, nlohmann::json{{"numbers", 3}}).not_compared, "none are published");

@@ -88,8 +88,9 @@ TEST("methods whose errors differ by less than the reference is known to are not
         for (const auto& p : curve->points) result.points.push_back(point(curve->label, p.error, p.price));
     mark_front(result.points, result.study);
     EXPECT_EQ(advice(result)[1],
-              "Read along each method's curve at e = 0.1, in units of the time of a: b 1.21. Not told apart from a, for at its price their "
-              "errors differ by less than the 0.02 that the reference is known to: b.");
+              "Interpolated along each method's curve at e = 0.1, in units of the time of a: b 1.21. Not distinguishable from a, because "
+              "at its cost their errors differ by less than the reference uncertainty of 0.02: b."
+              "");
 }
 
 }  // namespace weir::validation

@@ -256,7 +256,7 @@ TEST("what is wrong in stability.toml is named") {
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "floor = 1\n").find("\"floor\" needs a \"floor_why\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "asked = 1\n").find("\"asked\" needs a \"not_reached\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "floor = 1\nfloor_why = \"w\"\nasked = 1\nnot_reached = \"n\"\n")
-                  .find("\"asked\" needs a \"floor\" that is less"),
+                  .find("\"asked\" needs a \"floor\" that is smaller"),
               std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "theory = 1\n").find("\"theory\" needs a \"theory_source\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n").find("axes"), std::string::npos);
@@ -278,8 +278,8 @@ TEST("the command writes limits and page; a floor that does not hold is exit cod
     std::ifstream page(folder.path() / "page/index.md");
     std::ostringstream text;
     text << page.rdbuf();
-    EXPECT_NE(text.str().find("below its floor"), std::string::npos);
-    EXPECT_EQ(text.str().find("Asked and not reached"), std::string::npos);
+    EXPECT_NE(text.str().find("below its guaranteed range"), std::string::npos);
+    EXPECT_EQ(text.str().find("Open targets"), std::string::npos);
     EXPECT_TRUE(fs::exists(folder.path() / "out/study.json"));
 }
 
@@ -296,7 +296,7 @@ TEST("what is asked for beyond a floor is listed with its reason while it is not
     EXPECT_EQ(run(1.5), exit_success);  // it breaks before
     std::stringstream page;
     page << std::ifstream(folder.path() / "page/index.md").rdbuf();
-    EXPECT_NE(page.str().find("## Asked and not reached"), std::string::npos);
+    EXPECT_NE(page.str().find("## Open targets"), std::string::npos);
     EXPECT_NE(page.str().find("its own clock stands still"), std::string::npos);
     EXPECT_EQ(run(0.15), exit_claim_failed);
 }
@@ -344,7 +344,8 @@ TEST("a rung without its hardship is an error of the study, not a limit that was
     for (const std::string solver : {"mac_water", "pbf", "sph"}) {
         const Stress stress = only(film(folder.path(), solver, wet));
         EXPECT_EQ(study_error(stress, 1), "") << solver;
-        EXPECT_NE(study_error(stress, 4).find("not as hard as it says: wet_cells is 8, not at least 25: four layers"), std::string::npos)
+        EXPECT_NE(study_error(stress, 4).find("does not meet its stated difficulty: wet_cells is 8, not at least 25: four layers"),
+                  std::string::npos)
             << solver << ' ' << study_error(stress, 4);
         EXPECT_THROW(find_limit(stress, 1.5, sim::registry()), BadInput) << solver;
     }
