@@ -52,7 +52,7 @@ Columns::Columns(const scene::Scene& scene)
       cfl_(scene.number("time.cfl")) {
     refuse_what_columns_cannot(scene, state_);
     Field().swap(state_.qx), Field().swap(state_.qz);
-    // the still depth is that below the mean surface, so that waves at the start are no deeper water
+    // the still depth is relative to the mean surface: initial waves do not increase the depth
     const Plane& plane = state_.plane;
     const real wet = sum_of_columns(plane, [&](std::size_t c) { return state_.h[c] > state_.dry ? 1.0 : 0.0; });
     if (wet == 0) scene.refuse("solver", "the scene contains no water", "add liquid or initial.surface");
@@ -68,7 +68,7 @@ Columns::Columns(const scene::Scene& scene)
         displaced_ = Field(state_.plane.extent());
         try {
             floats_.enter(surface_, rate_, k_);
-        } catch (const NumericalFailure& failure) {  // on the bed, or in one another
+        } catch (const NumericalFailure& failure) {  // on the bed, or in another body
             scene.refuse("floats", failure.what());
         }
     }
@@ -81,7 +81,7 @@ Columns::Columns(const scene::Scene& scene)
     held_.made();
 }
 
-/// Faces between two wet columns pull by g times the mean of their still depths.
+/// k of faces between two wet columns: g times the mean of their still depths, over dx^2.
 void Columns::make_stiffness() {
     const Plane& plane = state_.plane;
     const Field& depth = state_.h;
@@ -112,7 +112,7 @@ void Columns::make_stiffness() {
     limit_ = stiffest > 0 ? std::sqrt(2 / stiffest) : infinity;
 }
 
-/// Neither waves nor objects pass more than so much of a column; an object that leaps over columns pushes nothing there.
+/// Waves and objects cross at most `cfl` columns per step; an object that skips columns would not push them.
 real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pace(state_.time)); }
 
 StepReport Columns::step(real dt) {
@@ -135,7 +135,7 @@ StepReport Columns::step(real dt) {
         const auto timed = passes_.time("floats");
         floats_.after(dt, surface_, rate_);
     }
-    state_.poured += dt * through_;  // the sweep moved by the rates that sides and damping have yet to change
+    state_.poured += dt * through_;  // the sweep used the rates before sides and damping change them
     if (damping_ > 0) {
         const auto timed = passes_.time("effect damping");
         const real left = std::exp(-dt * damping_);
@@ -151,7 +151,7 @@ StepReport Columns::step(real dt) {
     return {.dt = dt, .cfl = dt / limit_, .iterations = floats_.iterations()};
 }
 
-/// Open sides take what arrives: the discharge through the side is c times the height of the wave, so that dw/dt = -c/dx w there.
+/// Open sides absorb waves: the discharge through the side is c times the wave's height, so dw/dt = -c/dx w there.
 void Columns::let_out(real dt) {
     const Plane& plane = state_.plane;
     const auto slow = [&](int i, int r, real d) -> real {
@@ -177,7 +177,7 @@ void Columns::let_out(real dt) {
     through_ += plane.area() * taken;
 }
 
-/// Of the rows along x each rank's own; of the first and the last row those of the ranks at the ends.
+/// Gathers each rank's rows along x; the first and last row come from the ranks at the ends.
 void Columns::gather_taken() {
     const auto ranks = static_cast<std::size_t>(held_.cut().ranks());
     for (std::size_t end = 0; end < 2; ++end) {
@@ -209,12 +209,11 @@ void Columns::check() const {
             "depth", "a column became dry, which scheme.model = \"columns\" does not support; use scheme.model = \"shallow_water\"");
 }
 
-/// What whoever looks may read, from whoever owns it: the rows beside the cuts where each rank holds no more, else all. All ranks look at
-/// the same time.
+/// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
 void Columns::bring() const {
     if (brought_) return;
     const OwnPlanes mine = held_.own();
-    auto& own = const_cast<Columns&>(*this);  // what is written is what was not here: the state stays the same
+    auto& own = const_cast<Columns&>(*this);  // only rows of other ranks are written: the state does not change
     if (held_.alone()) {
         const std::array<Planes, 2> all{planes_of(own.surface_), planes_of(own.rate_)};
         slabs().refresh(held_.cut(), all, 1, periodic_z_);
@@ -259,7 +258,7 @@ std::vector<Integral> Columns::integrals() const {
     const OwnPlanes mine = held_.own();
     const real volume = this->volume();
     if (!floats_.empty()) floats_.displaced(surface_, displaced_);
-    // of the water's top over its level at rest; below objects it is lower than the height that its pressure stands for
+    // height of the water's top above its level at rest; below objects it is lower than the height equivalent to the pressure
     const real raised = sum_of_columns(state_.plane, [&](std::size_t c) {
         const real up = surface_[c] - (displaced_.empty() ? 0 : displaced_[c]) - state_.bed[c] - state_.h[c];
         return state_.h[c] > 0 ? up * up : 0;
@@ -283,7 +282,7 @@ std::vector<Integral> Columns::integrals() const {
     return list;
 }
 
-/// The height of the surface, and its rate as the velocity's part upwards. Not around floats, whose columns stand for their weight.
+/// The height of the surface, and its rate as the vertical velocity. Not editable with floats, whose columns include their weight.
 std::vector<EditableField> Columns::editable() {
     if (!floats_.empty()) return {};
     const OwnPlanes mine = held_.own();
@@ -294,7 +293,7 @@ std::vector<EditableField> Columns::editable() {
     return {std::move(velocity), std::move(surface)};
 }
 
-/// What was raised is poured, what was lowered is drained. The still depth stays.
+/// Counts raised volume as poured and lowered volume as drained. The still depth does not change.
 void Columns::edited(const EditableField& field) {
     const OwnPlanes mine = held_.looking();
     for_each_column_near(state_.plane, [&](std::size_t c) {

@@ -1,4 +1,4 @@
-// Columns as real-time graphics moves them (sweep.hpp), with objects that float or are dragged (floats.hpp).
+// Columns of water as in real-time graphics (sweep.hpp), with floating or dragged objects (floats.hpp).
 #pragma once
 #include "heightfield/effects.hpp"
 #include "heightfield/floats.hpp"
@@ -9,7 +9,7 @@ namespace weir::heightfield {
 
 class Columns final : public Solver {
 public:
-    static constexpr int checked_every = 16;  // steps: a look at all columns costs as much as half a step
+    static constexpr int checked_every = 16;  // steps: a check of all columns costs as much as half a step
     explicit Columns(const scene::Scene& scene);
     StepReport step(real dt) override;
     real advised_dt() const override;
@@ -42,20 +42,20 @@ private:
     HeldPlanes held_;
     State state_;  // h is the still depth
     Field surface_, rate_;
-    real volume_before_ = 0;  // an edit [m^3]
+    real volume_before_ = 0;  // before an edit [m^3]
     bool periodic_x_, periodic_z_;
     Stiffness k_;
     Sweep sweep_;
     Floats floats_;
     std::vector<EffectPlan> plans_;
-    std::shared_ptr<Hand> hand_;  // none where the scene names none
+    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
     mutable Field depth_, displaced_;
     Field nothing_;
-    std::array<std::vector<real>, 4> taken_;  // by open sides, of each column beside them: x_min, x_max, z_min, z_max
-    mutable bool brought_ = true;             // whether what whoever looks may read is here, and not this rank's rows alone
+    std::array<std::vector<real>, 4> taken_;  // absorbed by open sides, per adjacent column: x_min, x_max, z_min, z_max
+    mutable bool brought_ = true;             // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;
-    real through_ = 0;  // volume a second that sides let in [m^3/s]
+    real through_ = 0;  // volume rate through sides [m^3/s]
     std::int64_t steps_ = 0;
 };
 

@@ -19,7 +19,7 @@ void for_each_row(const State& s, F&& f) {
     for_each_plane(0, s.plane.nz, [&](int k) { f(static_cast<std::size_t>(k) * n, static_cast<std::size_t>(k + 1) * n); });
 }
 
-/// The part of gravity that is not along y: a bed that is drawn level and stands on a slope.
+/// The component of gravity in the plane: for a sloped bed drawn level.
 class Slope final : public Effect<State> {
 public:
     Stage stage() const override { return Stage::force; }
@@ -33,8 +33,8 @@ public:
     }
 };
 
-/// dq/dt = -k |u| q / h,  k = g n^2 / h^(1/3) (Manning) or a constant:  q / (1 + dt k |u| / h), which takes the friction at the end of the
-/// step and never turns the flow around, however thin the film (Bristeau & Coussin 2001).
+/// dq/dt = -k |u| q / h,  k = g n^2 / h^(1/3) (Manning) or a constant:  q / (1 + dt k |u| / h). It is implicit and never reverses the flow,
+/// even for thin films (Bristeau & Coussin 2001).
 class Friction final : public Effect<State> {
 public:
     explicit Friction(const scene::Table& table)
@@ -48,7 +48,7 @@ public:
                 const real h = s.h[c], x = s.qx[c], z = s.qz.empty() ? 0 : s.qz[c];
                 if (h <= s.dry) continue;
                 const real k = manning_ ? gn2 / std::cbrt(h) : coefficient_;
-                // the friction at the end acts on what is left then: q1 = q / (1 + dt k |q1| / h^2), a quadratic in |q1|
+                // implicit in the remaining discharge: q1 = q / (1 + dt k |q1| / h^2), a quadratic in |q1|
                 const real a = dt * k / (h * h), q = std::sqrt(x * x + z * z), left = 2 / (1 + std::sqrt(1 + 4 * a * q));
                 s.qx[c] = x * left;
                 if (!s.qz.empty()) s.qz[c] = z * left;
@@ -80,7 +80,7 @@ private:
     real rate_;
 };
 
-/// dh/dt = rate, on the domain or within a shape seen from above (its points at the height of the floor).
+/// dh/dt = rate, on the domain or within a shape seen from above (evaluated at the height of the floor).
 class Rain final : public Effect<State> {
 public:
     Rain(const scene::Table& table, const State& s)

@@ -1,4 +1,4 @@
-// What a scene may add to a height field: gravity, friction on the bed, rain.
+// The effects of a height field: gravity, bed friction, rain.
 #pragma once
 #include "core/effects.hpp"
 #include "heightfield/state.hpp"
@@ -6,7 +6,7 @@
 namespace weir::heightfield {
 
 std::vector<scene::Variant> effect_schemas();
-/// Those of the scene that are passes of their own.
+/// The scene's effects that are passes of their own.
 Effects<State> make_effects(const scene::Scene& scene, const State& state, const char* moved_in);
 
 }  // namespace weir::heightfield

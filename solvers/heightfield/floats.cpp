@@ -11,9 +11,9 @@ namespace weir::heightfield {
 
 namespace {
 
-constexpr real exact = 1e-14;  // of the right-hand side: what the solve leaves
+constexpr real exact = 1e-14;  // relative to the right-hand side: tolerance of the solve
 
-/// A box whose sides stand upright and along the axes.
+/// An axis-aligned box with vertical sides.
 template <int D>
 class Box final : public Body {
 public:
@@ -46,9 +46,8 @@ public:
                 if (const real covered = part(x0, x1, i, plane_.dx) * along_z(k); covered > 1e-12)
                     covers.push_back({plane_.at(i, k), std::min(1.0, covered), 0});
     }
-    /// The part of a column from 0 to 1 that lies before an edge at u. An edge that moves is smeared evenly over two columns: what it
-    /// covers begins and ends smoothly, and the shortest wave of a grid, two columns long, which stays behind as a comb, is a quarter as
-    /// high.
+    /// The part of a column from 0 to 1 that lies before an edge at u. A moving edge is spread evenly over two columns: coverage begins and
+    /// ends smoothly, and the shortest wave of the grid (two columns), which remains as an oscillation, has a quarter of the height.
     real before(real u) const {
         if (!moves_) return std::clamp(u, 0.0, 1.0);
         const real v = std::clamp(u + 1, 0.0, 3.0);
@@ -88,7 +87,7 @@ private:
     real height_ = 0, speed_ = 0, mass_ = 0;
 };
 
-/// What begins beyond the sides would float on water that is not there; a box that is dragged in from beyond may.
+/// Rejects floating boxes that start beyond the sides; a dragged box may enter from outside.
 void refuse_beyond_sides(const scene::Scene& scene, const scene::Table& box, const std::string& path, const Plane& plane) {
     const auto &at = box.numbers("at"), &size = box.numbers("size");
     const bool heaves = box.flag("heave");
@@ -152,7 +151,7 @@ void Floats::add(std::size_t column, real water, const Field& surface, const Fie
     covered_.push_back(c);
 }
 
-/// The columns that bodies cover at time t, behind those that they covered before.
+/// Finds the columns that bodies cover at time t, followed by those covered only before.
 void Floats::locate(real t, const Field& surface, const Field& rate) {
     for (Covered& c : covered_) c.surface = surface[c.column], c.rate = rate[c.column];
     contacts_.clear();
@@ -173,7 +172,7 @@ void Floats::locate(real t, const Field& surface, const Field& rate) {
     for (std::vector<real>* f : {&x_, &r_, &p_, &ap_, &diagonal_, &free_, &gap_, &part_}) f->assign(covered_.size(), 0);
 }
 
-/// A body that floats, and is not over columns with all of its area, would sink as if it leaked.
+/// A floating body that is not wholly above columns would sink as if it leaked.
 void Floats::see_whole(std::size_t b) const {
     const Vec<3> size = bodies_[b]->size();
     const real area = size[0] * (plane_.dim == 3 ? size[2] : 1);
@@ -182,7 +181,7 @@ void Floats::see_whole(std::size_t b) const {
     if (covered < (1 - 1e-6) * area) throw NumericalFailure("float", fmt::format("object {} has left the domain", b));
 }
 
-/// What is left for water below bodies, and between them.
+/// Depths of water below bodies, and between them.
 void Floats::see_depths() {
     std::fill(free_.begin(), free_.end(), 1.0);
     std::fill(gap_.begin(), gap_.end(), 0.0);
@@ -257,7 +256,7 @@ void Floats::before(real t, const Field& surface, const Field& rate, Stiffness& 
 }
 
 void Floats::after(real dt, Field& surface, Field& rate) {
-    constexpr int most = 8;  // times that contacts change within a step
+    constexpr int most = 8;  // maximum number of contact changes within a step
     for (int n = 0; n < most; ++n) {
         set_up(dt);
         solve(dt);
@@ -266,8 +265,8 @@ void Floats::after(real dt, Field& surface, Field& rate) {
     take(dt, surface, rate);
 }
 
-/// The system for s of the covered columns at the end of the step. A body's height Y follows: M (Y - Y_0 - dt v)/dt^2 = rho g A sum f (s -
-/// u - Y) - M g, over rho g A:  (m + F) Y = m (Y_0 + dt v - dt^2 g) + sum f (s - u).
+/// The system for s of the covered columns at the end of the step. A body's height Y satisfies M (Y - Y_0 - dt v)/dt^2 = rho g A sum f (s -
+/// u - Y) - M g; divided by rho g A:  (m + F) Y = m (Y_0 + dt v - dt^2 g) + sum f (s - u).
 void Floats::set_up(real dt) {
     std::fill(free_.begin(), free_.end(), 1.0);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -318,7 +317,7 @@ void Floats::multiply(const std::vector<real>& x, std::vector<real>& y, real dt)
     }
 }
 
-/// Conjugate gradients, preconditioned by the diagonal.
+/// Conjugate gradients with Jacobi preconditioning.
 void Floats::solve(real dt) {
     const std::size_t n = covered_.size();
     const auto dot = [n](const std::vector<real>& a, const std::vector<real>& b) {
@@ -352,8 +351,8 @@ real Floats::height_of(std::size_t b) const {
     return sum / stiff_[b];
 }
 
-/// Water pushes and never pulls: where the pressure would be negative the body lets go, and where water stands higher than it, it touches.
-/// One whose height is prescribed does not let go: air that would have to get below a hull held down has no way in that columns know of.
+/// Water pushes but does not pull: contact ends where the pressure would be negative, and begins where water is higher than the underside.
+/// A body of prescribed height keeps contact: columns do not model how air would get below it.
 bool Floats::change_contacts() {
     bool changed = false;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -368,8 +367,8 @@ bool Floats::change_contacts() {
     return changed;
 }
 
-/// Rates and heights by the solution; what crosses a face leaves one column and enters the other, so that water is kept whatever the solve
-/// left.
+/// Rates and heights from the solution. The volume through each face leaves one column and enters the other, so volume is conserved for any
+/// residual.
 void Floats::take(real dt, Field& surface, Field& rate) {
     for (std::size_t b = 0; b < bodies_.size(); ++b)
         if (const real height = height_of(b); bodies_[b]->mass() < infinity) bodies_[b]->set(height, (height - bodies_[b]->height()) / dt);
@@ -382,7 +381,7 @@ void Floats::take(real dt, Field& surface, Field& rate) {
                 w += dt * c.k[f] * (x_[static_cast<std::size_t>(place)] - x_[i]);
             } else {
                 w += dt * c.k[f] * (c.surface_beside[f] - x_[i]);
-                const real more = dt * c.k[f] * (x_[i] - c.surface);  // the sweep took the old height
+                const real more = dt * c.k[f] * (x_[i] - c.surface);  // the sweep used the old height
                 rate[c.beside[f]] += more;
                 surface[c.beside[f]] += dt * more;
             }
@@ -398,7 +397,7 @@ void Floats::take(real dt, Field& surface, Field& rate) {
     forget_free_columns();
 }
 
-/// Displaced volume and forces. Along x and z the pressure rho g d^2/2 acts on upright sides of the depth d below water.
+/// Displaced volume and forces. Along x and z the pressure force rho g d^2/2 acts on vertical sides of draught d.
 void Floats::tell() {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         Pushed& push = pushed_[b];
@@ -418,7 +417,7 @@ void Floats::tell() {
             for (std::size_t f = 0; f < 4; ++f) {
                 const std::ptrdiff_t place = covered_[i].place_beside[f];
                 const real there = place >= 0 ? part_[static_cast<std::size_t>(place)] : 0;
-                if (!(part_[i] > there)) continue;  // each face once, from the side that the body covers more of
+                if (!(part_[i] > there)) continue;  // each face once, from the side with more coverage
                 const real q = place >= 0 ? p_[static_cast<std::size_t>(place)] : 0;
                 const real force = (part_[i] * p_[i] + there * q) / (part_[i] + there) * (part_[i] - there);
                 (f < 2 ? push.along_x : push.along_z) += (f % 2 == 0 ? force : -force) * (f < 2 ? plane_.dz : plane_.dx);
@@ -426,7 +425,7 @@ void Floats::tell() {
     }
 }
 
-/// Columns that no body covers any more are like all others from here on.
+/// Columns that are no longer covered become ordinary columns.
 void Floats::forget_free_columns() {
     std::fill(part_.begin(), part_.end(), 0.0);
     for (const Contact& c : contacts_) part_[c.place] = 1;
@@ -457,7 +456,7 @@ real Floats::pace(real t) const {
     return most;
 }
 
-/// By the columns beside it: below it the height is that of its pressure, which a fast object raises far.
+/// Uses the neighbouring columns: below a body the height is equivalent to the pressure, which a fast object raises far.
 real Floats::over_top(const Field& surface) const {
     real most = 0;
     for (const Contact& c : contacts_) {
@@ -512,7 +511,7 @@ void Floats::save(Checkpoint& to) const {
 
 void Floats::restore(const Checkpoint& from, real t, const Field& surface, const Field& rate, Stiffness& k) {
     contacts_.clear();
-    set_stiffness(k);  // where the bodies were: open water again
+    set_stiffness(k);  // open water again at the bodies' old positions
     for (const Covered& c : covered_) place_of_[c.column] = -1;
     covered_.clear();
     std::vector<std::size_t> columns;

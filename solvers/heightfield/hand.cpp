@@ -8,7 +8,7 @@ namespace weir::heightfield {
 
 namespace {
 
-/// Σ f(column) over all columns, times their area.
+/// Integral of f(column) over all columns.
 template <class F>
 real sum_over_columns(const Plane& plane, F&& f) {
     return plane.area() * ordered_sum(plane.nz, [&](int k) {
@@ -57,7 +57,7 @@ private:
         hand_->impulse[0] += s.rho * volume * brush.velocity[0];
         if (!s.qz.empty()) hand_->impulse[2] += s.rho * volume * brush.velocity[2];
     }
-    /// What leaves takes its momentum with it.
+    /// Removed water takes its momentum with it.
     void drain(State& s, const Brush<3>& brush, real dt) {
         const auto left = [&](std::size_t c, const Vec<3>& x) {
             return s.h[c] > 0 ? std::max<real>(0, 1 - dt * brush.speed * brush.weight(x) / s.h[c]) : 1;

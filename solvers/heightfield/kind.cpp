@@ -1,4 +1,4 @@
-// What a scene may say to the solver "heightfield".
+// The schema of the solver "heightfield".
 #include "core/traffic.hpp"
 #include "heightfield/columns.hpp"
 #include "heightfield/effects.hpp"
@@ -88,7 +88,7 @@ Key initial_key() {
                      velocity}};
 }
 
-/// Sides that say how much water comes in, or how high it stands.
+/// Sides with a prescribed inflow or water level.
 Key sides_key() {
     Key sides{.name = "sides", .type = Type::table};
     for (const char* axis : {"x", "z"})
@@ -150,13 +150,13 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
     return std::make_unique<ShallowWater>(scene);
 }
 
-/// What of a scene is not cut into slabs.
+/// Rejects keys of a scene that are not supported in parallel.
 void over_ranks(const scene::Scene& scene) {
     if (scene.dim() == 3 && !scene.root().tables("floats").empty()) scene::one_process_only(scene, "floats", "floating objects are");
     scene::refuse_hand(scene);
 }
 
-/// Of a step over ranks: rows beside the cuts before each stage, and what stages say of all rows.
+/// Messages of a step in parallel: ghost rows before each stage, and reductions over rows.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
     const Plane plane(scene);
     const Sides sides(scene);

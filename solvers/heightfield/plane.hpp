@@ -1,5 +1,5 @@
-// The columns of a height field: one along y for each place of the horizontal plane; on a line along x in 2D, on x and z in 3D. Over ranks
-// rows along x are cut: a rank has its own and those beside its cuts that it reads.
+// The columns of a height field: one along y for each cell of the horizontal plane; along x in 2D, on x and z in 3D. In parallel rows along
+// x are distributed: a rank stores its own and ghost rows.
 #pragma once
 #include "core/held_planes.hpp"
 #include "core/solver.hpp"
@@ -16,7 +16,7 @@ namespace weir::heightfield {
 using Field = Grid<real, 2>;
 
 struct Plane {
-    int dim = 2;         // of the scene: 2 has one row of columns, a metre wide
+    int dim = 2;         // of the scene: 2 has one row of columns, one metre wide
     int nx = 0, nz = 1;  // columns
     real x0 = 0, z0 = 0, dx = 1, dz = 1;
     real floor = 0, ceiling = 0;  // of the domain along y [m]
@@ -34,7 +34,7 @@ struct Plane {
     real x(int i) const { return x0 + (i + 0.5) * dx; }
     real z(int k) const { return dim == 3 ? z0 + (k + 0.5) * dz : 0; }
     real area() const { return dx * dz; }  // of a column [m^2]; in 2D per metre of depth [m]
-    /// The grid as others see it: one cell along y.
+    /// The grid for output: one cell along y.
     GridView view() const {
         GridView g{.dim = dim, .cells = {nx, 1, nz}, .origin = {x0, floor, z0}, .spacing = {dx, ceiling - floor, dz}};
         if (dim == 2) g.spacing[2] = 0;
@@ -42,17 +42,17 @@ struct Plane {
     }
 };
 
-/// Rows beyond a cut that a rank holds: as many as a stage of shallow water reads.
+/// Ghost rows on each side: as many as a stage of shallow water reads.
 inline constexpr int rows_beside = 2;
 
-/// Who owns which rows; nowhere in 2D: a row is never cut, and every rank moves it.
+/// Partition of the rows; none in 2D: a single row is replicated on every rank.
 inline Cut cut_of_rows(const Plane& plane, int ranks) { return plane.dim == 3 ? cut_of(plane.nz, ranks) : Cut{}; }
 
-/// Over ranks: would each hold its own rows alone? Not where somebody looks at whole fields on all ranks.
+/// In parallel: returns whether rows have distributed storage: not where whole fields are read on all ranks.
 bool holds_own_rows(const scene::Scene& scene, const Cut& cut);
 HeldPlanes held_rows(const scene::Scene& scene);
 
-/// The rows of this rank and those that it reads beside its cuts, in runs: what each finds for itself. All in one process.
+/// This rank's rows and its ghost rows, as ranges of replicated work. All rows in one process.
 std::vector<PlaneRange> rows_near(const Plane& plane);
 
 /// f(k) for these rows, threaded.
@@ -61,14 +61,14 @@ void for_each_row_near(const Plane& plane, F&& f) {
     for (const PlaneRange& rows : rows_near(plane)) parallel_for(rows.begin, rows.end, f);
 }
 
-/// f(c) for their columns, one after the other.
+/// f(c) for their columns, serially.
 template <class F>
 void for_each_column_near(const Plane& plane, F&& f) {
     for (const PlaneRange& rows : rows_near(plane))
         for (std::size_t c = plane.at(0, rows.begin), end = plane.at(0, rows.end); c < end; ++c) f(c);
 }
 
-/// f of all columns, added row by row, times their area; over ranks of everybody's rows.
+/// Integral of f over all columns, added row by row; in parallel over all ranks' rows.
 template <class F>
 real sum_of_columns(const Plane& plane, F&& f) {
     return plane.area() * plane_sum(plane.nz, [&](int k) {
@@ -78,7 +78,7 @@ real sum_of_columns(const Plane& plane, F&& f) {
            });
 }
 
-/// The first of the columns that ranks have found, each the first of its own; none: -1.
+/// The smallest of the ranks' columns, each the first one found there; none: -1.
 std::int64_t first_of_ranks(std::int64_t column);
 
 }  // namespace weir::heightfield

@@ -17,9 +17,9 @@ namespace weir::heightfield {
 namespace {
 
 constexpr long most_cells = 1L << 28;
-constexpr std::size_t most_bytes = std::size_t{16} * most_cells;  // fifteen characters and a space a cell
+constexpr std::size_t most_bytes = std::size_t{16} * most_cells;  // fifteen characters and a space per cell
 
-/// Before they are allocated: each takes a character at least, and a space before the next.
+/// Checks the file size before allocation: each cell takes at least one character and one space.
 void require_text_of(std::size_t cells, std::size_t bytes, const Words& words) {
     if (bytes < 2 * cells - 1) words.fail(fmt::format("the header declares {} cells; the file has only {} bytes", cells, bytes));
 }
@@ -95,7 +95,7 @@ Raster read_asc(const std::filesystem::path& path, std::optional<real> nodata) {
     Raster r{.nx = *h.columns, .nz = *h.rows, .dx = *h.cell, .dz = *h.cell};
     r.x0 = *h.x - (h.x_of_centre ? 0.5 * r.dx : 0), r.z0 = *h.z - (h.z_of_centre ? 0.5 * r.dz : 0);
     r.value.resize(static_cast<std::size_t>(r.nx) * static_cast<std::size_t>(r.nz));
-    for (int row = 0; row < r.nz; ++row)  // the file begins in the north: at the greatest z
+    for (int row = 0; row < r.nz; ++row)  // the file begins in the north: at the largest z
         for (int i = 0; i < r.nx; ++i) {
             real value = words.number(fmt::format("height {} of row {} ({} x {} are announced)", i + 1, row + 1, r.nx, r.nz));
             if (h.nodata && value == *h.nodata) {

@@ -76,7 +76,7 @@ private:
         for (std::size_t v = 0; v < 4; ++v) e[v] = b[v] + (end == 0 ? -0.5 : 0.5) * slope(b[v] - a[v], c[v] - b[v]);
         return e;
     }
-    /// Through a face, as the column before (0) or behind (1) it gets it.
+    /// Flux through a face, as seen by the column before it (0) or behind it (1).
     std::array<real, 3> flux(int axis, const Column& L, const Column& R, int seen_by) const {
         const real g = s_.g, bed = std::max(L[1] - L[0], R[1] - R[0]);
         const real hl = std::max(0.0, L[1] - bed), hr = std::max(0.0, R[1] - bed);

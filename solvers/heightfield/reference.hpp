@@ -1,4 +1,4 @@
-// The stage of rows.hpp once more, as the papers write it: one face after the other, nothing kept. What the fast one is compared with.
+// The stage of rows.hpp in the papers' form, face by face, without caching: the reference for the fast one.
 #pragma once
 #include "heightfield/rows.hpp"
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-// Iterations of the next loop depend on none of the others.
+// iterations of the next loop are independent
 #ifdef __clang__
 #define WEIR_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
@@ -20,8 +20,8 @@ namespace weir::heightfield {
 
 namespace {
 
-constexpr int ghosts = 2;       // columns beyond each side: what the reconstruction at a side's face looks at
-constexpr int rows_apart = 32;  // of a part of the plane, which one thread works on at a time
+constexpr int ghosts = 2;       // columns beyond each side: the reconstruction at a side's face reads them
+constexpr int rows_apart = 32;  // rows of a part of the plane, processed by one thread at a time
 constexpr int pad = 8;
 
 /// Half of the limited slope from the differences to both neighbours.
@@ -41,16 +41,16 @@ template <Limiter limiter>
     return a * b > 0 ? (a > 0 ? m : -m) : 0;
 }
 
-/// Depth, surface, velocity across the face and along it.
+/// Depth, surface, velocity normal to the face and along it.
 struct Values {
     real *h, *surface, *across, *along;
 };
-/// Through faces: water, momentum across as each side gets it, momentum along.
+/// Fluxes through faces: water, normal momentum for each side, tangential momentum.
 struct Fluxes {
     real *h, *before, *behind, *along;
 };
 
-/// HLLC over the higher bed of both sides (Audusse et al. 2004, eqs. 2.10 to 2.15).
+/// HLLC with hydrostatic reconstruction over the higher bed of both sides (Audusse et al. 2004, eqs. 2.10 to 2.15).
 [[gnu::always_inline]] inline void face(const Values& L, int i, const Values& R, int j, const Fluxes& to, int n, real g) {
     const real bed_l = L.surface[i] - L.h[i], bed_r = R.surface[j] - R.h[j], bed = bed_l > bed_r ? bed_l : bed_r;
     const real over_l = L.surface[i] - bed, over_r = R.surface[j] - bed;
@@ -73,7 +73,7 @@ struct Fluxes {
     if (to.along) to.along[n] = flux * (flux > 0 ? L.along[i] : R.along[j]);
 }
 
-/// Takes rows out of one block of memory.
+/// Allocates rows from one block of memory.
 class Carver {
 public:
     Carver(real* at, int n)
@@ -103,7 +103,7 @@ private:
 };
 constexpr int rows_of_scratch = 3 * 4 + 2 * 4 + 2 * 2 * 4 + 3 * 4 + 1;
 
-template <Limiter limiter, bool flat>  // flat: a plane of columns; else one row
+template <Limiter limiter, bool flat>  // flat: a plane of columns; otherwise one row
 class Part {
 public:
     Part(const StageOf& stage, real* scratch, RowReport* reports)
@@ -140,7 +140,7 @@ private:
     std::array<Values, 2>& edges(int k) { return edges_[(k + 2) % 2]; }
     Fluxes& below(int k) { return across_z_[(k + 2) % 2]; }  // the faces on the lower side of row k
 
-    /// Depth, surface and velocities of row k, which may lie beyond the sides.
+    /// Loads depth, surface and velocities of row k, which may lie beyond the sides.
     void load(int k) {
         const int nz = s_.plane.nz;
         if (k >= 0 && k < nz) return read(k, row(k));
@@ -201,7 +201,7 @@ private:
         r.h[to] = r.h[from], r.surface[to] = r.surface[from], r.across[to] = r.across[from], r.along[to] = r.along[from];
     }
 
-    /// Values at both edges of each column of row k along z. Across is z there.
+    /// Reconstructs both edges of each column of row k along z; the normal direction is z there.
     void split_z(int k) {
         const Values &a = row(k - 1), &b = row(k), &c = row(k + 1);
         auto& [low, high] = edges(k);
@@ -232,7 +232,7 @@ private:
         for (int i = 0; i < n_; ++i) face(low, i, high, i, to, i, g);
     }
 
-    /// New depth and discharge of row k; the faces below and above it are there.
+    /// New depth and discharge of row k, from the faces below and above it.
     void finish(int k) {
         split_x(row(k));
         const Values l = left_, r = right_;
@@ -284,7 +284,7 @@ private:
             }
         }
     }
-    /// Sums and extrema of row k in eight lanes; depths that round-off made negative are raised to 0.
+    /// Sums and extrema of row k in eight lanes; depths made negative by round-off are set to 0.
     void report(int k) {
         RowReport& told = reports_[k];
         real* h = to_.h + s_.plane.at(0, k);

@@ -1,13 +1,14 @@
-// One stage of the shallow-water scheme, row by row: reconstruction along x and z, fluxes through both, new depth and discharge. A row's
-// intermediate values stay in the cache nearest to the thread that has it; every face is computed alike whoever computes it, so that the
-// result does not depend on the number of threads.
+// One stage of the shallow-water scheme, row by row: reconstruction along x and z, fluxes, new depth and discharge. A row's intermediate
+// values stay in the thread's nearest cache. Every face is computed in the same way by all threads, so that the result does not depend on
+// their number.
 //
 //   h_t + div q = 0,   q_t + div(q q/h) + grad(g h^2/2) = -g h grad b
 //
-// Audusse, Bouchut, Bristeau, Klein & Perthame 2004: depth h, surface h + b and velocity are reconstructed to the faces with a limiter
-// (second order), the depths there are taken over the higher of both beds, h* = max(0, h + b - max(b_left, b_right)), and what differs,
-// g (h^2 - h*^2)/2, goes into the momentum of each side: water at rest stays at rest, and no depth becomes negative while dt times the sum
-// over the axes of (|u| + c)/dx is at most 1/2. HLLC fluxes (Toro 2001) with the speeds of Einfeldt and, at a dry edge, of Ritter.
+// Audusse, Bouchut, Bristeau, Klein & Perthame 2004: depth h, surface h + b and velocity are reconstructed at the faces with a limiter
+// (second order). The depths there are taken over the higher of both beds, h* = max(0, h + b - max(b_left, b_right)), and the difference, g
+// (h^2 - h*^2)/2, is added to the momentum of each side. The scheme is well balanced (water at rest stays at rest), and depths stay
+// nonnegative while dt times the sum over the axes of (|u| + c)/dx is at most 1/2. HLLC fluxes (Toro 2001) with the speeds of Einfeldt and,
+// at a dry edge, of Ritter.
 #pragma once
 #include "heightfield/state.hpp"
 
@@ -18,7 +19,7 @@ namespace weir::heightfield {
 enum class Limiter { none, minmod, van_leer, mc };
 Limiter limiter_named(const std::string& name);
 
-/// Depth and discharges of all columns, as one stage reads or writes them.
+/// Depth and discharges of all columns, input or output of a stage.
 struct Water {
     real *h, *qx, *qz;
 };
@@ -31,26 +32,26 @@ struct StageOf {
     bool second = false;
 };
 
-/// What a stage says of each row.
+/// The sums and extrema of a row in a stage.
 struct RowReport {
     real volume = 0;   // [m^2]: sum of depths times dx
     real rate = 0;     // max (|u| + c)/dx + (|w| + c)/dz [1/s]; of second stages
     real lowest = 0;   // depth before it is raised to 0 [m]
-    real through = 0;  // volume that came in through the ends of the row, and of the first and last row through their sides [m^3]
+    real through = 0;  // volume inflow through the ends of the row, and for the first and last row through their sides [m^3]
 };
 
 /// Scratch of the threads, and the stages.
 class Rows {
 public:
     Rows(const Plane& plane, Limiter limiter);
-    /// One report a row.
+    /// One report per row.
     void stage(const StageOf& stage, std::vector<RowReport>& reports);
     std::size_t bytes() const;
 
 private:
     Plane plane_;
     Limiter limiter_;
-    std::vector<std::vector<real>> scratch_;  // one a thread
+    std::vector<std::vector<real>> scratch_;  // one per thread
 };
 
 }  // namespace weir::heightfield

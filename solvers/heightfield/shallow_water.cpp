@@ -11,7 +11,7 @@ namespace weir::heightfield {
 
 namespace {
 
-/// dt max sum (|u| + c)/h: beyond it a column could give away more water than it has (Audusse et al. 2004).
+/// dt max sum (|u| + c)/h: beyond it a column could lose more water than it has (Audusse et al. 2004).
 constexpr real most_cfl = 0.5;
 
 }  // namespace
@@ -39,7 +39,7 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
     held_.made();
 }
 
-/// Volume and the rate that limits the step, anew: at the start, and after effects have changed depths or speeds.
+/// Recomputes the volume and the rate that limits the step: at the start, and after effects have changed depths or speeds.
 void ShallowWater::measure() {
     const Plane& plane = state_.plane;
     const real rx = 1 / plane.dx, rz = 1 / plane.dz, dry = state_.dry;
@@ -87,19 +87,18 @@ void ShallowWater::move_water(real dt) {
     take_reports(0.5);
 }
 
-/// Over ranks, rows beyond the cuts: a face's two reconstructions read two.
+/// In parallel, fills the ghost rows: the two reconstructions of a face read two.
 void ShallowWater::bring_beside(const std::array<Field*, 3>& water, int deep) const {
     if (!over_ranks()) return;
     const std::array<Planes, 3> all{planes_of(*water[0]), planes_of(*water[1]), planes_of(*water[2])};
     slabs().refresh(held_.cut(), all, deep, held_.ring());
 }
 
-/// What whoever looks may read, from whoever owns it: the rows beside the cuts where each rank holds no more, else all. All ranks look at
-/// the same time.
+/// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
 void ShallowWater::bring() const {
     if (brought_) return;
     const OwnPlanes mine = held_.own();
-    auto& state = const_cast<State&>(state_);  // what is written is what was not here: the state stays the same
+    auto& state = const_cast<State&>(state_);  // only rows of other ranks are written: the state does not change
     if (held_.alone()) {
         bring_beside({&state.h, &state.qx, &state.qz}, 1);
     } else {
@@ -175,7 +174,7 @@ std::vector<Integral> ShallowWater::integrals() const {
     return list;
 }
 
-/// Depths, with the velocity kept, and the velocity, which is a mean over the depth and has no part upwards.
+/// Editable: the depth, with the velocity kept, and the depth-averaged velocity, which has no vertical component.
 std::vector<EditableField> ShallowWater::editable() {
     fields();
     EditableField velocity{"", "velocity", {qx1_.values(), nothing_.values()}}, depth{"", "depth", {state_.h.values()}};
@@ -185,7 +184,7 @@ std::vector<EditableField> ShallowWater::editable() {
     return {std::move(velocity), std::move(depth)};
 }
 
-/// Water that was put there is counted as poured; where there is too little to move it stands still.
+/// Added water is counted as poured; below the dry depth it is set at rest.
 void ShallowWater::edited(const EditableField&) {
     const OwnPlanes mine = held_.looking();
     const real before = volume_;

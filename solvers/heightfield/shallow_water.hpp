@@ -1,4 +1,4 @@
-// The shallow-water equations on a plane of columns: second order in space and time, water at rest at rest, no negative depth.
+// The shallow-water equations on a plane of columns: second order in space and time, well balanced, no negative depth.
 #pragma once
 #include "heightfield/effects.hpp"
 #include "heightfield/hand.hpp"
@@ -40,12 +40,12 @@ private:
     State state_;
     Rows rows_;
     std::vector<RowReport> reports_;
-    mutable Field h1_, qx1_, qz1_;  // between the stages; between steps, the surface and the velocity as others see them
+    mutable Field h1_, qx1_, qz1_;  // intermediate stage; between steps, the surface and the velocity for output
     Field terrain_, nothing_;       // the bed without solids, where these move; the vertical velocity
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
-    std::shared_ptr<Hand> hand_;   // none where the scene names none
-    mutable bool brought_ = true;  // whether what whoever looks may read is here, and not this rank's rows alone
+    std::shared_ptr<Hand> hand_;   // nullptr where the scene has none
+    mutable bool brought_ = true;  // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

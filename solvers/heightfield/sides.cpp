@@ -7,8 +7,8 @@ namespace weir::heightfield {
 
 namespace {
 
-/// Depth h with  2 sqrt(g h) - q/h = r:  a discharge q > 0 runs in against the invariant that comes from inside. With s = sqrt(g h) it is
-/// f(s) = 2 s^3 - r s^2 - g q = 0, which has one positive root; right of it f grows and is convex, so that Newton's steps come down to it.
+/// Depth h with  2 sqrt(g h) - q/h = r:  an inflow discharge q > 0 with the outgoing invariant r. With s = sqrt(g h) it is f(s) = 2 s^3 - r
+/// s^2 - g q = 0, which has one positive root; right of it f is increasing and convex, so Newton's method converges monotonically.
 real depth_of_discharge(real q, real r, real g) {
     real s = std::max(0.0, r / 2) + std::cbrt(g * q / 2);
     for (int n = 0; n < 60; ++n) {
@@ -65,7 +65,7 @@ Sides::Sides(const scene::Scene& scene) {
 }
 
 Beside beside(const Side& side, const Beside& inside, real bed, real g) {
-    const real c = std::sqrt(g * inside.h), leaving = inside.out + 2 * c;  // the invariant that comes from inside
+    const real c = std::sqrt(g * inside.h), leaving = inside.out + 2 * c;  // the outgoing invariant
     switch (side.kind) {
         case SideKind::inflow: {
             if (inside.out > c) return inside;
@@ -73,12 +73,12 @@ Beside beside(const Side& side, const Beside& inside, real bed, real g) {
             return {g > 0 ? s * s / g : inside.h, -side.value, side.along};
         }
         case SideKind::discharge: {
-            if (side.value <= 0) return {inside.h, -inside.out, inside.along};  // nothing comes in: a wall
+            if (side.value <= 0) return {inside.h, -inside.out, inside.along};  // no inflow: a wall
             const real h = g > 0 ? depth_of_discharge(side.value, leaving, g) : inside.h;
             return {h, h > 0 ? -side.value / h : 0, 0};
         }
         case SideKind::level: {
-            if (inside.out > c) return inside;  // supercritical: the level is not felt
+            if (inside.out > c) return inside;  // supercritical outflow: the level has no effect
             const real h = std::max(0.0, side.value - bed);
             const real out = leaving - 2 * std::sqrt(g * h);
             return {h, std::clamp(out, -std::sqrt(g * h), leaving), out < 0 ? 0 : inside.along};

@@ -1,5 +1,5 @@
-// What stands at the sides of the plane, as the columns beyond it that a side imagines. Open sides follow the characteristics of the
-// shallow-water equations (Stoker 1957, sec. 10.2): what runs out comes from the last column, what runs in from the scene.
+// Boundary conditions of the plane, as ghost columns beyond its sides. Open sides follow the characteristics of the shallow-water equations
+// (Stoker 1957, sec. 10.2): outgoing ones are determined by the last column, incoming ones by the scene.
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
@@ -16,12 +16,12 @@ struct Side {
     real along = 0;  // inflow: velocity along the side [m/s]
 };
 
-/// Depth and velocity, out of the domain and along the side.
+/// Depth and velocity, normal to the side (outwards) and along it.
 struct Beside {
     real h, out, along;
 };
 
-/// The column beyond a side that is neither wall nor periodic, from the column inside: its depth, velocity out of the domain and bed.
+/// The ghost column of a side that is neither wall nor periodic, from the inner column: its depth, outward velocity and bed.
 Beside beside(const Side& side, const Beside& inside, real bed, real g);
 
 /// side[2 axis + end], axis 0 along x and 1 along z.

@@ -1,4 +1,4 @@
-// The solver "heightfield": water as one depth a column of the plane.
+// The solver "heightfield": water as one depth per column of the plane.
 #pragma once
 #include "scene/solver_kind.hpp"
 

@@ -23,7 +23,7 @@ std::vector<std::string> coordinates(const Plane& plane) {
     return plane.dim == 2 ? std::vector<std::string>{"x"} : std::vector<std::string>{"x", "z"};
 }
 
-/// f(i, k) for every column that a rank finds for itself, threaded over rows.
+/// f(i, k) for every column of this rank's rows and ghost rows, threaded over rows.
 template <class F>
 void for_each_column(const Plane& plane, F&& f) {
     for_each_row_near(plane, [&](int k) {
@@ -31,7 +31,7 @@ void for_each_column(const Plane& plane, F&& f) {
     });
 }
 
-/// The last column that was found in each row, -1 where none was: of them that of the first row.
+/// The entry of the first row with a column found; -1 where there is none.
 std::int64_t first_of_rows(const Plane& plane, const std::vector<int>& found) {
     std::int64_t first = -1;
     for (int k = plane.nz - 1; k >= 0; --k)
@@ -39,13 +39,13 @@ std::int64_t first_of_rows(const Plane& plane, const std::vector<int>& found) {
     return first_of_ranks(first);
 }
 
-/// The formula at `path` at the middle of each column; refused where it has no value.
+/// The formula at `path`, evaluated at the centre of each column; rejected where it has no value.
 Field formula_field(const Scene& scene, const std::string& path, const Plane& plane) {
     const scene::Formula f = scene::formula_at(scene, path, coordinates(plane));
     Field values(plane.extent());
     std::int64_t bad = -1;
     for (const PlaneRange& rows : rows_near(plane))
-        for (int k = rows.begin; k < rows.end; ++k)  // threads would wait for one another
+        for (int k = rows.begin; k < rows.end; ++k)  // serial: threads would wait for one another
             for (int i = 0; i < plane.nx; ++i) {
                 const real at[2] = {plane.x(i), plane.z(k)};
                 const std::size_t c = plane.at(i, k);
@@ -58,7 +58,7 @@ Field formula_field(const Scene& scene, const std::string& path, const Plane& pl
     return values;
 }
 
-/// What a reader of files says of them stands at the key that names the file.
+/// Errors of a file reader are reported at the key that names the file.
 template <class Read>
 Raster raster_at(const Scene& scene, const std::string& path, Read&& read) {
     try {
@@ -98,15 +98,15 @@ Raster read_raster(const Scene& scene, const Plane& plane) {
 
 struct Span {
     real low = 0, high = -1;
-    bool gap = false;  // air inside of it
+    bool gap = false;  // air below it
     bool empty() const { return high < low; }
 };
 
-/// Of a line's length: how far above the bed a shape may begin and still stand on it.
+/// Relative to a line's length: largest gap above the bed at which a shape still stands on it.
 constexpr int hover_parts = 64;
 
-/// Where a line from `low` to `high` lies in the shape, exactly: however thin it is, and so that a box has the same top over each of its
-/// columns. Parts that leave a millionth of the line between them touch.
+/// The part of a line from `low` to `high` inside the shape, exact for any thickness, so that a box has the same top over each of its
+/// columns. Parts closer than a millionth of the line are joined.
 template <int D>
 Span span_of(const geometry::Shape<D>& shape, const geometry::Pose<D>& pose, real x, real z, real low, real high) {
     thread_local std::vector<geometry::Interval> inside;
@@ -193,7 +193,7 @@ public:
     bool moves() const override { return solids_.moving(); }
 
 private:
-    /// Four lines a column and axis; the number of a column over which the solid hangs, if asked for, or -1.
+    /// Four lines per column and axis; returns the index of a column over which the solid hangs, if requested, or -1.
     std::int64_t raise(std::size_t s, const Field& terrain, Field& bed, bool look_for_gaps) {
         constexpr int lines = 4;
         std::vector<int> hangs(static_cast<std::size_t>(plane_.nz), -1);
@@ -261,7 +261,7 @@ void start(const Scene& scene, State& state) {
 State::State(const Scene& scene) : plane(scene), sides(scene), rho(scene.number("fluid.density")), dry(scene.number("scheme.dry_depth")) {
     if (plane.nx < 2 || (plane.dim == 3 && plane.nz < 2))
         scene.refuse("grid.cells", "a height field has at least 2 columns along each axis");
-    constexpr real nothing = 1e-9;  // [m/s^2]: moves nothing in any run
+    constexpr real nothing = 1e-9;  // [m/s^2]: no noticeable motion in any run
     if (const auto* gravity = scene.effect("gravity")) {
         const auto& a = gravity->numbers("g");
         if (a[1] > nothing)

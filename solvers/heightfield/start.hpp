@@ -1,4 +1,4 @@
-// The state at t = 0: bed from terrain and solids, water from shapes or from a formula of its surface, velocity.
+// The state at t = 0: bed from terrain and solids, water from shapes or a formula for its surface, velocity.
 #pragma once
 #include "geometry/solids.hpp"
 #include "heightfield/state.hpp"
@@ -8,13 +8,14 @@
 
 namespace weir::heightfield {
 
-/// Height of the bed of each column, without solids. Over ranks each finds what it holds (rows_near), here and in all that follows.
+/// Height of the bed of each column, without solids. In parallel each rank computes the rows that it stores (rows_near), as all functions
+/// below.
 Field make_terrain(const scene::Scene& scene, const Plane& plane);
 /// Fills depth, discharge and bed.
 void start(const scene::Scene& scene, State& state);
 
-/// Solids that stand on the bed raise it: where one covers a column, its bed is the solid's top, in part where it covers a part. What moves
-/// raises and lowers the bed as it goes.
+/// Solids standing on the bed raise it: where one covers a column, the bed is the solid's top, in part where it covers a part. Moving
+/// solids raise and lower the bed.
 class RaisedBed {
 public:
     virtual ~RaisedBed() = default;
@@ -22,7 +23,7 @@ public:
     virtual void at(real t, const Field& terrain, Field& bed) = 0;
     virtual bool moves() const = 0;
 };
-/// Null without solids.
+/// nullptr without solids.
 std::unique_ptr<RaisedBed> make_raised_bed(const scene::Scene& scene, const Plane& plane);
 
 }  // namespace weir::heightfield

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int rows_of_part = 32;
 
-/// While it lives, numbers below 1e-308 are zero on this thread. Ahead of a wave there are nothing else: each step passes a smaller part on
-/// to the next column, and numbers so small take a processor a hundred times as long.
+/// Scope in which numbers below 1e-308 are flushed to zero on this thread. Ahead of a wave there are only such numbers: each step passes a
+/// smaller part to the next column, and denormal arithmetic is a hundred times slower.
 class TinyIsZero {
 public:
 #ifdef __SSE__
@@ -35,7 +35,7 @@ public:
     TinyIsZero& operator=(const TinyIsZero&) = delete;
 };
 
-/// One row: `below` and `above` are its neighbours' old heights, `old` its own, with one more at either end.
+/// One row: `below` and `above` are its neighbours' old heights, `old` its own, with one more entry at either end.
 [[gnu::always_inline]] inline void uniform_row(const real* __restrict old, const real* __restrict below, const real* __restrict above,
                                                real* __restrict surface, real* __restrict rate, int n, real ax, real az, real dt) {
     for (int i = 0; i < n; ++i) {
@@ -78,8 +78,8 @@ void Sweep::part(const OwnRows& own, int p, Field& surface, Field& rate, const S
     const auto edge = [&](int of, int last) {
         return edges_.data() + (2 * static_cast<std::size_t>(of) + static_cast<std::size_t>(last)) * row_size;
     };
-    // the old rows before and after this part: those that others overwrite were kept, those of other ranks stay as they were; beyond the
-    // ends of the plane a row meets itself: no difference, no pull
+    // the old rows before and after this part: rows that other threads overwrite were copied, ghost rows are unchanged; beyond the ends of
+    // the plane a row is its own neighbour: zero difference
     const auto before_row = [&](int row) {
         return own.has(row) ? edge(row < begin ? p - 1 : own.parts() - 1, 1) : surface.data() + plane_.at(0, row);
     };

@@ -10,10 +10,10 @@ namespace weir::particles {
 
 namespace {
 
-/// A cell is looked at in so many places along each axis.
+/// Samples of a cell along each axis.
 constexpr int samples = 8;
 
-/// What bodies and solids leave of a cell.
+/// Volume fraction of a cell outside bodies and solids.
 template <int D>
 real open_part(const Domain<D>& domain, const Vec<D>& middle) {
     int open = 0, all = 1;
@@ -35,7 +35,7 @@ real away_from_bodies(const Domain<D>& domain, const Vec<D>& x) {
     return nearest;
 }
 
-/// The furthest from bodies first; of those as far, evenly spread ones (multiples of the golden ratio).
+/// Orders cells by distance from bodies; those at equal distance in a low-discrepancy order (multiples of the golden ratio).
 template <int D>
 std::vector<Vec<D>> places_beside_bodies(const Domain<D>& domain, const std::vector<Vec<D>>& middles) {
     constexpr real golden = 0.6180339887498949;

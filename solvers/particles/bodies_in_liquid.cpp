@@ -7,8 +7,8 @@ namespace weir::particles {
 
 namespace {
 
-/// A body lighter than this part of the water that it takes the place of is carried as one of that part. Water pushes it and does not pull:
-/// one that weighs nothing would be thrown as fast as the first particle pushes it, and nothing that it has would bring it back.
+/// Minimum density of a body, relative to the liquid: lighter bodies are treated as having it. Particles push but do not pull, so a
+/// massless body would get the speed of the first particle that hits it, and nothing would return it.
 constexpr real least_density = 0.01;
 
 }  // namespace
@@ -34,7 +34,7 @@ BodiesInLiquid<D>::BodiesInLiquid(const Fluid<D>& fluid)
     rigid::Surroundings<D> around = bodies_->surroundings(fluid.domain.solids);
     around.reach = 1e-3 * spacing_;
     contacts_.find(bodies_->all(), around);
-    contacts_.mark(bodies_->all());  // what stands on something does not fall to begin with
+    contacts_.mark(bodies_->all());  // bodies at rest on a support do not start with the velocity of free fall
 }
 
 template <int D>
@@ -51,7 +51,7 @@ void BodiesInLiquid<D>::begin(const Domain<D>& domain, real time, real dt) {
     }
     fastest = speed();
     rigid::Surroundings<D> around = bodies_->surroundings(domain.solids);
-    around.reach = 2 * dt * (fastest + dt * norm(gravity_)) + spacing_;  // a particle may push it as far as that
+    around.reach = 2 * dt * (fastest + dt * norm(gravity_)) + spacing_;  // a particle may push a body this far
     contacts_.find(start_, around);
     meetings_.clear();
     if (hand_) be_held(time, dt);
@@ -66,8 +66,8 @@ void BodiesInLiquid<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& s
                          "numbers of the list bodies, from 0 to " + std::to_string(bodies_->count() - 1));
 }
 
-/// dV/dt = rate (target - V) of the mass of the body and of the water in its place, V at the end of the step: stable for any step. What
-/// depends on V counts as mass (staggered/bodies_in_flow.cpp does the same on a grid).
+/// Interactive forcing: dV/dt = rate (target - V) for the mass of the body and of the displaced liquid, implicit in V, so stable for any
+/// step. The factor of V is added to the mass (as in staggered/bodies_in_flow.cpp on a grid).
 template <int D>
 void BodiesInLiquid<D>::be_held(real time, real dt) {
     const auto brush = hand_->at<D>(time);
@@ -81,7 +81,8 @@ void BodiesInLiquid<D>::be_held(real time, real dt) {
     for (int a = 0; a < D; ++a) hold_.target[a] = std::clamp(hold_.target[a], -most, most);
 }
 
-/// What the hand gave in an exchange: all that it pulls in the first of a step, in those after it what their changes take of that.
+/// Records the impulse of the interactive forcing: in the first exchange of a step the whole pull, in later ones its change with the
+/// velocity.
 template <int D>
 void BodiesInLiquid<D>::tell_hand(bool heavy) {
     for (std::size_t a = 0; a < D && hold_.body >= 0; ++a) {
@@ -123,7 +124,7 @@ Vec<D> BodiesInLiquid<D>::across(const Meeting<D>& m) const {
     return u - dot(u, m.pull) / dot(m.pull, m.pull) * m.pull;
 }
 
-/// P and M + K, one meeting after the other.
+/// P and M + K, summed over the pairs in order.
 template <int D>
 void BodiesInLiquid<D>::sum_up() {
     for (std::size_t b = 0; b < bodies_->count(); ++b) impulse_[b] = Twist{}, matrix_[b] = start_[b].mass_matrix();
@@ -174,7 +175,7 @@ void BodiesInLiquid<D>::solve_for_velocities(real dt, bool heavy) {
     for (std::size_t i = 0; i < velocity_.size(); ++i) change_[i] = velocity_[i] - before_[i];
 }
 
-/// What the fluid gave is the opposite of what particles have been given.
+/// The impulse of the fluid on a body is the opposite of that on its particles.
 template <int D>
 void BodiesInLiquid<D>::count_forces() {
     for (Meeting<D>& m : meetings_) {
@@ -214,7 +215,7 @@ void BodiesInLiquid<D>::move(Domain<D>& domain, real dt) {
         rigid::Body<D>& body = (*bodies_)[b];
         body.at = start_[b].at, body.orientation = start_[b].orientation;
         for (std::size_t k = 0; k < n; ++k) body.velocity[k] = velocity_[n * b + k];
-        body.fly(dt, dry_[b] ? -1.0 * gravity_ : Vec<D>{});  // its velocity has the weight of this step already
+        body.fly(dt, dry_[b] ? -1.0 * gravity_ : Vec<D>{});  // the velocity already includes gravity in this step
     }
     bodies_->place(domain.solids);
 }

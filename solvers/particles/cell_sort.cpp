@@ -8,7 +8,7 @@ namespace weir::particles {
 
 namespace {
 
-/// Of coordinates begin .. end - 1, in lanes. Zero times a number that is not finite is none: it stays in the trace.
+/// Range of the coordinates begin .. end - 1, vectorized. Zero times a value that is not finite is NaN, which the trace detects.
 Range range_of(const real* x, int begin, int end) {
     constexpr int lanes = 8;
     real lo[lanes], hi[lanes], trace[lanes];
@@ -27,7 +27,7 @@ Range range_of(const real* x, int begin, int end) {
     return r;
 }
 
-/// parts: scratch, one range a thread.
+/// parts: scratch, one range per thread.
 Range range_of(const real* x, int count, std::vector<Range>& parts) {
     parts.resize(static_cast<std::size_t>(threads()));
     for_chunks(count, static_cast<int>(parts.size()),
@@ -40,7 +40,7 @@ Range range_of(const real* x, int count, std::vector<Range>& parts) {
 }  // namespace
 
 CellGrid cover_box(const Box& box, int count, real cell_size) {
-    const real most = 1e6 + 8.0 * count;  // cells: more than this costs more memory than the particles themselves
+    const real most = 1e6 + 8.0 * count;  // number of cells above which they take more memory than the particles
     CellGrid grid;
     grid.origin = box.lo;
     for (real size = cell_size;; size *= 1.26) {
@@ -89,7 +89,7 @@ int CellSort::cell_at(const std::array<real, 3>& x) const {
     return c;
 }
 
-/// cell() of particles begin .. end - 1, an axis at a time: loops that become lanes.
+/// cell() of particles begin .. end - 1, one axis at a time: vectorizable loops.
 void CellSort::find_cells(const Coordinates& x, int begin, int end, int* c) const {
     std::fill(c + begin, c + end, 0);
     for (std::size_t a = 3; a-- > 0;) {
@@ -105,7 +105,7 @@ void CellSort::list_cells(const Coordinates& x, int count, std::vector<int>& to)
     for_chunks(count, [&](int, int begin, int end) { find_cells(x, begin, end, to.data()); });
 }
 
-/// Turns the chunks' histograms into the places where each chunk's particles of each cell begin, and fills the cell starts.
+/// Converts the chunks' histograms to the first index of each chunk's particles in each cell, and fills the cell starts.
 void CellSort::place_starts(int cells, int chunks) {
     before_.assign(static_cast<std::size_t>(chunks) + 1, 0);
     for_chunks(cells, chunks, [&](int t, int begin, int end) {
@@ -138,13 +138,13 @@ void CellSort::sort(const Coordinates& x, int count, const CellGrid& grid, int f
     cover(grid);
     count_ = count, first_ = first;
     const bool all = last - first == grid.cells[0] * grid.cells[1] * grid.cells[2];
-    const auto cells = static_cast<std::size_t>(last - first + (all ? 0 : 1));  // the last for what is of no interest
+    const auto cells = static_cast<std::size_t>(last - first + (all ? 0 : 1));  // the last one contains all other cells
     const auto bin = [&](int cell) { return static_cast<std::size_t>(cell >= first && cell < last ? cell - first : last - first); };
     const int chunks = threads();
     order_.resize(static_cast<std::size_t>(count));
     cell_.resize(static_cast<std::size_t>(count));
     unsorted_.resize(static_cast<std::size_t>(count));
-    if (start_.capacity() <= cells) start_.reserve(cells + cells / 2 + 1);  // liquid that spreads asks ever more seldom
+    if (start_.capacity() <= cells) start_.reserve(cells + cells / 2 + 1);  // grows by half, so spreading liquid rarely reallocates
     start_.resize(cells + 1);
     histograms_.resize(static_cast<std::size_t>(chunks));
     for_chunks(count, chunks, [&](int t, int begin, int end) {

@@ -10,7 +10,7 @@
 
 namespace weir::particles {
 
-/// Of one coordinate.
+/// The range of one coordinate.
 struct Range {
     real lo = infinity, hi = -infinity;
     bool finite = true;
@@ -20,14 +20,14 @@ struct Box {
     std::array<real, 3> lo{0, 0, 0}, hi{0, 0, 0};
 };
 
-/// Cells over a box: cell (i, j, k) has number (k n_y + j) n_x + i.
+/// Cells over a box: cell (i, j, k) has index (k n_y + j) n_x + i.
 struct CellGrid {
     std::array<int, 3> cells{1, 1, 1};
     std::array<real, 3> origin{0, 0, 0};
     real per_cell = 1;  // 1 / cell size
 };
-/// Cells at least `cell_size` wide over the box of `count` points. Where points are so sparse that cells would outnumber them by far, cells
-/// are wider.
+/// Cells of at least the width `cell_size` over the box of `count` points. Cells are wider where their number would far exceed that of the
+/// points.
 CellGrid cover_box(const Box& box, int count, real cell_size);
 
 class CellSort {
@@ -38,32 +38,32 @@ public:
     Box box(const Coordinates& x, int count, bool& finite);
     /// Sorts `count` points into these cells, which cover them.
     void sort(const Coordinates& x, int count, const CellGrid& grid);
-    /// The same where only cells [first, last) are of interest: what stands in others comes behind them, in no order of cells.
+    /// The same where only cells [first, last) are needed: points in other cells follow, unsorted.
     void sort(const Coordinates& x, int count, const CellGrid& grid, int first, int last);
     /// Into cells at least `cell_size` wide over their box.
     void sort(const Coordinates& x, int count, real cell_size) { sort(x, count, cover_box(box(x, count), count, cell_size)); }
 
-    /// The sort again within each cell: before(i, j) of points, where they stood in another order. Those behind the cells of interest come
-    /// in the order of their cells too.
+    /// Sorts again within each cell by before(i, j), for points that were stored in another order. Points outside the needed cells are also
+    /// ordered by cell.
     template <class Before>
     void order_cells(Before&& before);
 
     int count() const { return count_; }
-    /// Where each sorted particle came from.
+    /// Original index of each sorted particle.
     const std::vector<int>& order() const { return order_; }
     /// Cell of each sorted particle.
     const std::vector<int>& cell_of() const { return cell_; }
-    /// Cell c holds sorted particles start()[c - first_cell()] .. start()[c + 1 - first_cell()] - 1.
+    /// Cell c contains sorted particles start()[c - first_cell()] .. start()[c + 1 - first_cell()] - 1.
     const std::vector<int>& start() const { return start_; }
     int first_cell() const { return first_; }
     const std::array<int, 3>& cells() const { return grid_.cells; }
     std::size_t bytes() const;
-    /// The cells alone, without the sort.
+    /// Sets the cells without sorting.
     void cover(const CellGrid& grid) { grid_ = grid; }
-    /// The cell of a point that is covered.
+    /// The cell of a point inside the box.
     int cell(const Coordinates& x, int i) const;
     int cell_at(const std::array<real, 3>& x) const;
-    /// Those of points 0 .. count - 1.
+    /// The cells of points 0 .. count - 1.
     void list_cells(const Coordinates& x, int count, std::vector<int>& to);
 
 private:
@@ -74,9 +74,9 @@ private:
     CellGrid grid_;
     std::vector<int> order_, cell_, start_;
     std::vector<int> unsorted_;                 // cell of each particle before sorting
-    std::vector<std::vector<int>> histograms_;  // one a chunk; later: where the chunk's next particle of the cell goes
-    std::vector<Range> ranges_;                 // scratch, one a thread
-    std::vector<int> before_;                   // scratch: particles in the cells before each chunk's
+    std::vector<std::vector<int>> histograms_;  // one per chunk; later: destination of the chunk's next particle of the cell
+    std::vector<Range> ranges_;                 // scratch, one per thread
+    std::vector<int> before_;                   // scratch: number of particles in the cells before each chunk's
 };
 
 template <class Before>

@@ -1,4 +1,4 @@
-// A range divided into as many contiguous chunks as there are threads, one a thread, always in the same way: memory stays with its thread.
+// Divides a range into as many contiguous chunks as there are threads, always in the same way: memory stays local to its thread.
 #pragma once
 #include "core/parallel.hpp"
 

@@ -1,5 +1,5 @@
-// What walls and solids had to correct: how often a particle that would have come through was put back, and from how far. That none is
-// outside afterwards holds by construction and says nothing of the method; this does.
+// Boundary corrections: number of particles that crossed walls or solids and were moved back, and the largest distance. That no particle is
+// outside afterwards holds by construction; these numbers show the quality of the method.
 #pragma once
 #include "core/types.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace weir::particles {
 
-/// Counts are of whole numbers and the largest distance is an exact maximum, so neither depends on the order in which threads meet.
+/// Counts are integers and the largest distance is an exact maximum, so neither depends on the order of threads.
 struct Clamps {
     std::int64_t count = 0;  // since the start
     real farthest = 0;       // [m]
@@ -21,8 +21,8 @@ struct Clamps {
     }
 };
 
-/// A particle is kept this part of a spacing from walls and solids, and a correction of less than that second part is rounding: positions
-/// in single precision know a place to 6e-8 of the domain.
+/// Relative to the spacing: distance of particles from walls and solids, and the smallest correction that counts. Smaller ones are
+/// rounding: single-precision positions are accurate to 6e-8 of the domain.
 inline constexpr real wall_margin = 1e-3, least_clamp = 1e-4;
 
 }  // namespace weir::particles

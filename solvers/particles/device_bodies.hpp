@@ -1,6 +1,6 @@
-// Bodies among the particles of a device. The device does what it does beside any solid that moves; what bodies are given is summed on the
-// host, by the code of the threads and in their order, so that both end in the same bits. For that some numbers of each particle cross
-// once or twice a step, sorted positions in each iteration of PBF, as they do for pieces of ice (device_ice.cpp).
+// Bodies among the particles of a device. The device treats them like any moving solid. The forces on bodies are summed on the host, by the
+// code of the threads and in the same order, so that both give the same bits. Some numbers of each particle are therefore transferred once
+// or twice per step; in PBF sorted positions are transferred in each iteration, as for pieces of ice (device_ice.cpp).
 #pragma once
 #include "particles/bodies_in_liquid.hpp"
 #include "particles/device_fluid.hpp"
@@ -14,12 +14,12 @@ class BodiesOnDevice {
 public:
     BodiesOnDevice(DeviceFluid<D>& fluid, BodiesInLiquid<D>& bodies, const plain::WallParams& walls)
         : fluid_(fluid), bodies_(bodies), walls_(walls) {}
-    /// After neighbours are found: which sorted particles can meet a solid in this step.
+    /// After the neighbour search: finds the sorted particles that can reach a solid in this step.
     void find_near();
     const std::vector<int>& near() const { return near_; }
-    /// Whose place is sorted place k.
+    /// Original index of sorted particle k.
     const std::vector<int>& owners() const { return owners_; }
-    /// Who meets whom at sorted positions (a or b), by the terms written there. Returns the positions, four numbers each.
+    /// Finds the coupling pairs at sorted positions (a or b), with the terms computed there. Returns the positions, four numbers each.
     std::vector<float>& meet(const backend::Memory& positions);
     /// Sorted positions a of the particles near solids, D numbers each.
     const std::vector<float>& places();

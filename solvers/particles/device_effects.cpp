@@ -1,11 +1,11 @@
-// What devices make of a scene's effects, and what they have not got.
+// The effects of a scene on devices, and the unsupported ones.
 #include "particles/device_fluid.hpp"
 
 namespace weir::particles {
 
 namespace {
 
-/// The effects that devices have, with the kernels in which they act; forces: the method's own.
+/// The supported effects, with the kernels in which they act; forces: those of the method.
 std::vector<std::pair<std::string, std::string>> known_effects(const std::string& forces) {
     return {{"gravity", forces},
             {"central_force", forces},

@@ -34,11 +34,11 @@ StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& do
     p.margin = domain.margin;
     p.feel = 1e-3 * domain.spacing;
     p.least_back = least_clamp * domain.spacing;
-    p.reach = support + 2 * domain.spacing;  // and what the corrections of one step may move a particle
+    p.reach = support + 2 * domain.spacing;  // and the displacement by the corrections of one step
     return p;
 }
 
-/// The periods in single precision, exactly as numbers of a program's text: what passes over pairs measure distances by.
+/// The periods in single precision, as exact numbers in the program's text: pair passes measure distances with them.
 template <int D>
 std::string periods(const Domain<D>& domain) {
     std::string lengths, inverse;
@@ -54,7 +54,7 @@ std::string periods(const Domain<D>& domain) {
     return " -DWEIR_PERIOD=" + lengths + " -DWEIR_PER_PERIOD=" + inverse;
 }
 
-/// How many neighbours there is room for at first: half as many again as a lattice has.
+/// Initial capacity for neighbours: half as many again as in a lattice.
 template <int D>
 int usual_neighbours(real support_in_spacings) {
     const real ball = D == 2 ? pi * std::pow(support_in_spacings, 2) : 4 * pi / 3 * std::pow(support_in_spacings, 3);
@@ -152,7 +152,7 @@ void DeviceFluid<D>::compile(const DeviceSetup& setup) {
 template <int D>
 void DeviceFluid<D>::settle_in() {
     auto particles = most_particles();
-    if (stride_ > 1 && host_.count() > stride_) particles += static_cast<std::size_t>(host_.count()) / 4;  // more than was foreseen
+    if (stride_ > 1 && host_.count() > stride_) particles += static_cast<std::size_t>(host_.count()) / 4;  // more than estimated
     particles = std::max<std::size_t>(particles, 1);
     plan_.check(device_->info(), particles);
     plan_.allocate(*device_, particles);
@@ -270,7 +270,7 @@ typename DeviceFluid<D>::Reduced DeviceFluid<D>::reduce(std::string_view kernel,
 template <int D>
 real DeviceFluid<D>::max_speed() {
     const real square = reduce("speeds", {count(), stride_, x, v, parts_}).largest;
-    speed_ = std::isfinite(square) ? std::sqrt(square) : host().max_speed();  // which names what is not finite
+    speed_ = std::isfinite(square) ? std::sqrt(square) : host().max_speed();  // the error names the quantity that is not finite
     return speed_;
 }
 
@@ -281,7 +281,7 @@ void DeviceFluid<D>::end_step() {
     cross_sides();
 }
 
-/// The device counts on, modulo 2^32, and remembers the largest distance.
+/// The device's counter is modulo 2^32; it also keeps the largest distance.
 template <int D>
 void DeviceFluid<D>::count_clamps() {
     std::array<std::uint32_t, 2> seen{};
@@ -296,7 +296,7 @@ void DeviceFluid<D>::reorder() {
         run("gather_numbers", {count(), stride_, axes, order, numbers, scratch});
         std::swap(numbers, scratch);
     };
-    arrange(x, x_star, D), arrange(v, x_star, D);  // x* is not needed any more
+    arrange(x, x_star, D), arrange(v, x_star, D);  // x* is no longer needed
     arrange(density, scratch_, 1), arrange(carried, scratch_, 1);
     if (host_.warm) arrange(enthalpy, scratch_, 1);
     run("gather_names", {count(), order, id_, names_});

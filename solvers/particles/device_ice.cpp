@@ -1,6 +1,6 @@
-// Pieces of ice on a device. Their sums are taken on the host, in the order of the state: positions and velocities cross once or twice a
-// step, sorted positions in each iteration of PBF. A device that shares the host's memory hardly notices; over a bus it is 16 bytes a
-// particle each way and iteration.
+// Pieces of ice on a device. Their sums are computed on the host, in the order of the state. Positions and velocities are transferred once
+// or twice per step; in PBF sorted positions in each iteration. This costs little on a device that shares the host's memory; over a bus it
+// is 16 bytes per particle, direction and iteration.
 #include "particles/device_fluid.hpp"
 
 namespace weir::particles {

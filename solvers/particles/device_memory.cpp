@@ -9,7 +9,7 @@
 namespace weir::particles {
 
 namespace {
-/// Of a device's memory: the rest is the driver's, the screen's, and room for lists that grow.
+/// Usable part of a device's memory: the rest is for the driver, the display, and growing lists.
 constexpr double usable = 0.9;
 }  // namespace
 

@@ -1,4 +1,4 @@
-// What a scene needs of a device's memory, known before any of it is taken: arrays by their bytes a particle.
+// Memory estimate of a scene on a device, before anything is allocated: arrays and their bytes per particle.
 #pragma once
 #include "backend/device.hpp"
 
@@ -9,12 +9,12 @@ namespace weir::particles {
 
 class DevicePlan {
 public:
-    /// `memory` shall hold this many bytes for each particle.
+    /// Plans this many bytes per particle for `memory`.
     void want(backend::Memory& memory, std::size_t bytes_per_particle) { wanted_.push_back({&memory, bytes_per_particle}); }
     std::size_t bytes_per_particle() const;
-    /// Throws BadInput, with the number that would fit, where the device has no room for `count` particles.
+    /// Throws BadInput, with the number that would fit, where the device has too little memory for `count` particles.
     void check(const backend::DeviceInfo& device, std::size_t count) const;
-    /// Takes all that is wanted.
+    /// Allocates all planned arrays.
     void allocate(backend::Device& device, std::size_t count) const;
 
 private:

@@ -23,7 +23,7 @@ void DeviceFluid<D>::find_neighbours(const Memory& positions) {
     meet_solids();
 }
 
-/// The box of all particles decides the cells, by the rule of the processor's path.
+/// The box of all particles defines the cells, as on the processor's path.
 template <int D>
 CellGrid DeviceFluid<D>::cover(const Memory& positions) {
     const auto group = static_cast<std::size_t>(group_);

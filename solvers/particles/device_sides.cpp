@@ -1,4 +1,4 @@
-// What makes particles more or fewer on a device: emitters and sinks, sides that are open; and sides that repeat.
+// Changes of the number of particles on a device: emitters and sinks, open sides; and periodic sides.
 #include "particles/device_fluid.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void DeviceFluid<D>::let_in(real dt) {
     if (!emitters.sinks().empty() && count() > 0) take_out("find_what_is_in_no_sink");
 }
 
-/// Behind the last particle. Where there is no room, through the host, which takes more memory before it uploads again.
+/// Appends particles. Where the capacity is exceeded, the state goes through the host, which reallocates before the next upload.
 template <int D>
 void DeviceFluid<D>::append(const std::array<std::vector<real>, D>& places, const std::array<std::vector<real>, D>& velocities,
                             const std::vector<real>& enthalpies) {
@@ -61,10 +61,10 @@ template <int D>
 void DeviceFluid<D>::cross_sides() {
     if (count() == 0) return;
     if (repeats_) run("wrap", {count(), stride_, state_params, x});
-    if (open_ && take_out("find_what_stays")) max_speed();  // of what is left: steps are advised by it
+    if (open_ && take_out("find_what_stays")) max_speed();  // of the remaining particles: the step limit uses it
 }
 
-/// The others keep their order. Waits for how many they are. Returns whether there are fewer.
+/// Removes particles; the others keep their order. Waits for their number. Returns whether there are fewer.
 template <int D>
 bool DeviceFluid<D>::take_out(std::string_view find_stayers) {
     run(find_stayers, {count(), stride_, state_params, x, cell_});
@@ -80,8 +80,8 @@ bool DeviceFluid<D>::take_out(std::string_view find_stayers) {
     return true;
 }
 
-/// That the scene can come to have: those at first and those that enter, but no more than fill the domain, and a tenth. (Where sinks or
-/// open sides let out what enters, a run may let in far more than there ever is.)
+/// Largest number of particles expected in the scene: the initial ones and those that enter, but no more than fill the domain, plus a
+/// tenth. (With sinks or open sides the total that enters may be far larger.)
 template <int D>
 std::size_t DeviceFluid<D>::most_particles() const {
     const auto& domain = host_.domain;

@@ -1,4 +1,4 @@
-// Solids on a device: their shapes as text of its program, their poses as numbers, and the passes that meet them.
+// Solids on a device: their shapes as program text, their poses as numbers, and the passes that use them.
 #include "particles/device_fluid.hpp"
 
 #include <algorithm>

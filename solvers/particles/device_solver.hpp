@@ -32,7 +32,7 @@ protected:
     const Fluid<D>& state() const final { return fluid_.host(); }
     const Fluid<D>& setting() const final { return fluid_.setting(); }
     Fluid<D>& writable() final { return fluid_.change(); }
-    /// Of bodies too.
+    /// Including bodies.
     real speed() const final { return this->bodies_ ? std::max(fluid_.speed(), this->bodies_->speed()) : fluid_.speed(); }
     /// The same, after a step.
     real find_speed() { return fluid_.max_speed(), speed(); }
@@ -49,7 +49,7 @@ protected:
     }
 
     DeviceFluid<D> fluid_;
-    std::unique_ptr<BodiesOnDevice<D>> beside_;  // where the scene names bodies
+    std::unique_ptr<BodiesOnDevice<D>> beside_;  // where the scene has bodies
 };
 
 }  // namespace weir::particles

@@ -1,4 +1,4 @@
-// The box in which particles live, its sides, and the solids inside: where particles are kept, what leaves, what repeats.
+// The domain of particles, its sides and solids: confinement, removal at open sides, periodicity.
 #pragma once
 #include "geometry/sides.hpp"
 #include "geometry/solids.hpp"
@@ -27,8 +27,8 @@ struct Domain {
     geometry::Sides<D> sides;
     geometry::Solids<D> solids;
     real spacing = 0;                          // of particles at rest [m]
-    real margin = 0;                           // no particle comes closer to a wall or solid [m]
-    std::shared_ptr<rigid::Bodies<D>> bodies;  // they stand behind the solids; none where the scene names none
+    real margin = 0;                           // minimum distance of particles from walls and solids [m]
+    std::shared_ptr<rigid::Bodies<D>> bodies;  // they follow the solids; nullptr where the scene has none
 
     Domain() = default;
     /// From "grid" (whose cells must be cubes: their width is the particle spacing), "sides", "solids" and "bodies".
@@ -39,32 +39,32 @@ struct Domain {
         return kind == geometry::SideKind::wall || kind == geometry::SideKind::moving_wall;
     }
     Vec<D> centre() const { return 0.5 * (lo + hi); }
-    /// Its number among the solids.
+    /// Index of the first body among the solids.
     std::size_t first_body() const;
     Frame frame() const;
-    /// The nearest place inside the walls and outside the solids.
+    /// The closest point inside the walls and outside the solids.
     Vec<D> kept(Vec<D> x) const {
         if (!solids.empty()) x = solids.push_out(x, margin, 1e-3 * spacing);
         for (int a = 0; a < D; ++a) x[a] = std::min(std::max(x[a], keep_lo[a]), keep_hi[a]);
         return x;
     }
-    /// The same, and what that corrected.
+    /// The same; records the boundary correction.
     Vec<D> kept(const Vec<D>& x, Clamps& clamps) const {
         const Vec<D> y = kept(x);
         if (const real by = norm(y - x); by > least_clamp * spacing) clamps.add(1, by);
         return y;
     }
     Vec<D> wrapped(Vec<D> x) const;
-    /// Beyond an open side (where it is taken out), or, which must never be, beyond a wall or inside a solid.
+    /// Returns whether x is beyond an open side (the particle is removed), or, as an error, beyond a wall or inside a solid.
     bool left(const Vec<D>& x) const;
     bool outside(const Vec<D>& x) const;
-    /// The walls in the coordinates of the fast path. density and gradient: the kernels that see them.
+    /// The walls in the coordinates of the fast path. density and gradient: the kernels that use them.
     template <class Params>
     Params walls(const Kernel<D>& density, const Kernel<D>& gradient) const;
 };
 
-/// Refuses sides and solids that would not do what the scene says: an inflow (particles enter by emitters), and walls that the liquid
-/// sticks to where no viscosity makes it stick; `instead` says what to do about that.
+/// Rejects unsupported sides and solids: inflow sides (particles enter by emitters), and no-slip walls without viscosity; `instead` is the
+/// advice in the message.
 template <int D>
 void refuse_idle_walls(const scene::Scene& scene, const Domain<D>& domain, bool viscous, const std::string& instead);
 

@@ -1,5 +1,5 @@
-// The effects that every particle method has. A new one is a struct here and a row of offers(): that makes it a scene's, and it acts on
-// threads; the other backends refuse it by name until they have it too (device_effects.cpp; reference_solver.cpp of the method).
+// The effects of every particle method. A new one is a struct here and a row of offers(): it is then available in scenes and acts on
+// threads. The other backends reject it by name until they support it (device_effects.cpp; reference_solver.cpp of the method).
 #include "geometry/hand.hpp"
 #include "particles/flow.hpp"
 #include "scene/gravity.hpp"
@@ -83,7 +83,7 @@ struct Confinement final : Effect<Flow<D>> {
     }
 };
 
-/// What a scene may say of an effect, and what acts.
+/// The schema of an effect, and its factory.
 template <int D>
 struct Offer {
     scene::Variant schema;

@@ -8,7 +8,7 @@ namespace weir::particles {
 
 namespace {
 
-/// Of every lattice column of the shape along `axis`, the site where the flow enters.
+/// The inflow site of every lattice column of the shape along `axis`.
 template <int D>
 std::vector<Vec<D>> upstream_sites(const geometry::Shape<D>& shape, const Domain<D>& domain, int axis, bool forward) {
     std::vector<Vec<D>> sites;

@@ -1,5 +1,5 @@
-// Emitters: particles enter layer by layer at the upstream end of a shape, one layer each time the flow has moved by the spacing, so that
-// the mass flow is rho0 times area times speed. Sinks: shapes that take particles out.
+// Emitters: particles enter layer by layer at the upstream end of a shape, one layer for each spacing that the flow has moved, so that the
+// mass flow is rho0 times area times speed. Sinks: shapes in which particles are removed.
 #pragma once
 #include "particles/fluid.hpp"
 
@@ -14,12 +14,12 @@ public:
     /// From "emitters" and "sinks".
     Emitters(const scene::Scene& scene, const Domain<D>& domain);
     bool empty() const { return emitters_.empty() && sinks_.empty(); }
-    /// Everything that enters in (time, time + dt], and everything that has reached a sink.
+    /// Adds particles that enter in (time, time + dt], and removes those in sinks.
     void apply(Fluid<D>& fluid, real dt);
-    /// add(x, u, enthalpy) for everything that enters in (time, time + dt].
+    /// add(x, u, enthalpy) for each particle that enters in (time, time + dt].
     template <class F>
     void emit(real time, real dt, F&& add);
-    /// How many particles will have entered until then.
+    /// Number of particles that have entered until `time`.
     real entered(real time) const;
     const std::vector<geometry::ShapePtr<D>>& sinks() const { return sinks_; }
     void save(Checkpoint& to) const;
@@ -28,13 +28,13 @@ public:
 private:
     struct Emitter {
         Vec<D> velocity{};
-        real enthalpy = 0;  // specific, where particles carry heat [J/kg]
+        real enthalpy = 0;  // specific enthalpy, where particles have heat [J/kg]
         real start = 0, end = infinity, period = infinity;
         std::vector<Vec<D>> sites;  // of one layer
     };
     std::vector<Emitter> emitters_;
     std::vector<geometry::ShapePtr<D>> sinks_;
-    std::vector<std::int64_t> layers_;  // that each emitter has let in
+    std::vector<std::int64_t> layers_;  // number of layers that each emitter has emitted
 };
 
 template <int D>

@@ -7,7 +7,7 @@ namespace weir::particles {
 
 namespace {
 
-/// What a kilogram gains by falling from x to the lowest corner of the domain [J].
+/// Specific potential energy between x and the lowest corner of the domain [J/kg].
 template <int D>
 real depth_below(const Fluid<D>& fluid, const Vec<D>& x) {
     real sum = 0;
@@ -18,7 +18,7 @@ real depth_below(const Fluid<D>& fluid, const Vec<D>& x) {
     return std::max<real>(0, sum);
 }
 
-/// The fastest of the solids over the whole run, felt at a coarse lattice of places near them.
+/// Maximum speed of the solids over the whole run, sampled on a coarse lattice near them.
 template <int D>
 real fastest_solid(Fluid<D>& fluid, real end) {
     auto& solids = fluid.domain.solids;

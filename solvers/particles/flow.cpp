@@ -94,7 +94,7 @@ void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid) {
 
 namespace {
 
-/// Nothing moves in a scene without liquid to which nothing is ever given; most often its shapes fall between the particles' places.
+/// Rejects scenes without liquid and without emitters, which never move; most often their shapes fall between the lattice points.
 template <int D>
 void refuse_nothing(const scene::Scene& scene, const Fluid<D>& fluid) {
     if (fluid.next_id > 0 || Emitters<D>(scene, fluid.domain).entered(scene.number("time.end")) > 0) return;

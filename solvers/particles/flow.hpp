@@ -1,5 +1,5 @@
-// What an effect on particles sees: the state, and after the positions are final the pairs. Forces act before the prediction (v += dt f);
-// XSPH and vorticity confinement after it.
+// The interface between effects and particles: the state, and the pairs once positions are final. Forces act before the prediction (v += dt
+// f); XSPH and vorticity confinement after it.
 #pragma once
 #include "core/effects.hpp"
 #include "particles/fluid.hpp"
@@ -14,12 +14,12 @@ struct Flow {
     Fluid<D>& fluid;
     Pairs& pairs;
     const single::PbfParams& params;
-    std::vector<float> velocity, change;  // float4 of sorted particles, scratch of the finish effects
+    std::vector<float> velocity, change;  // float4 of sorted particles, scratch of the velocity effects
     int kernel = 0;                       // of the passes: Müller's, cubic, Wendland
 
-    /// Over ranks, the velocities of particles that this one reads.
+    /// In parallel, fills the velocities of ghost particles.
     void share_velocity();
-    /// Velocities as the passes read them, images included.
+    /// Velocities in the layout of the passes, including images.
     void load_velocity();
     FinishPass pass(const std::vector<float>& values, std::vector<float>& to);
     /// v += factor * change.
@@ -27,14 +27,14 @@ struct Flow {
     std::size_t bytes() const { return (velocity.capacity() + change.capacity()) * sizeof(float); }
 };
 
-/// What every particle method can be asked for (effects.cpp).
+/// The effects of every particle method (effects.cpp).
 std::vector<scene::Variant> effect_schemas();
 template <int D>
 void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects);
 
 /// initial.velocity: constant, strain, rotation.
 scene::Key initial_key();
-/// "sinks": shapes that take particles out.
+/// "sinks": shapes in which particles are removed.
 scene::Key sinks_key();
 template <int D>
 void set_initial_velocity(const scene::Scene& scene, Fluid<D>& fluid);

@@ -12,7 +12,7 @@ namespace weir::particles {
 
 namespace {
 
-/// This rank's part of so many.
+/// This rank's part of `count` particles.
 std::array<std::size_t, 2> part_of(std::size_t count) {
     const auto r = static_cast<std::size_t>(slabs().rank()), ranks = static_cast<std::size_t>(slabs().ranks());
     return {count * r / ranks, count * (r + 1) / ranks};
@@ -116,7 +116,7 @@ void Fluid<D>::deal(Fluid& part) const {
     part.take_setting(*this);
     part.shared = true;
     HandOver::Arrays own, sorted;
-    const_cast<Fluid&>(*this).for_each_array([&](std::vector<real>& f) { own.push_back(&f); });  // they are read
+    const_cast<Fluid&>(*this).for_each_array([&](std::vector<real>& f) { own.push_back(&f); });  // they are only read
     part.for_each_array([&](std::vector<real>& f) { sorted.push_back(&f); });
     HandOver hands;
     hands.clear();
@@ -137,7 +137,7 @@ template <int D>
 void Fluid<D>::gather(Fluid& all) const {
     all.take_setting(*this);
     const std::vector<real> places = of_all_ranks(place);
-    std::vector<int> at(places.empty() ? 0 : static_cast<std::size_t>(next_place), -1), order;  // who stands there
+    std::vector<int> at(places.empty() ? 0 : static_cast<std::size_t>(next_place), -1), order;  // particle with each place
     for (std::size_t i = 0; i < places.size(); ++i) at[static_cast<std::size_t>(places[i])] = static_cast<int>(i);
     std::copy_if(at.begin(), at.end(), std::back_inserter(order), [](int i) { return i >= 0; });
     const auto fill = [&](std::vector<real>& to, const std::vector<real>& own) {
@@ -155,7 +155,7 @@ void Fluid<D>::gather(Fluid& all) const {
 template <int D>
 real Fluid<D>::fastest() const {
     if (count() == 0) return 0;
-    // 0 x makes a position that is not finite turn the speed into NaN: one sweep finds both
+    // 0 x turns a position that is not finite into a NaN speed: one pass finds both
     return std::sqrt(block_max(count(), [&](int i) {
         const Vec<D> u = velocity(i);
         return dot(u, u) + 0 * dot(u, position(i));
@@ -242,7 +242,7 @@ std::vector<Integral> Fluid<D>::integrals() const {
     return list;
 }
 
-/// Particles go to the ranks in whose part of the file they stand.
+/// Each particle goes to the rank that reads its part of the file.
 template <int D>
 void Fluid<D>::save_part(Checkpoint& to) const {
     Fluid part;
@@ -278,7 +278,7 @@ void Fluid<D>::save(Checkpoint& to) const {
 
 namespace {
 
-/// Of what was read: as many of each as there are particles, each of them a number.
+/// Checks a list from a file: one finite value per particle.
 void require_list(const std::string& name, const std::vector<real>& list, std::size_t count) {
     if (list.size() != count)
         throw std::runtime_error("checkpoint block \"particles." + name + "\" holds " + std::to_string(list.size()) + " values of " +

@@ -1,5 +1,5 @@
-// What every particle solver carries: positions and velocities in double precision, one array an axis, and the box they live in.
-// The mass of a particle is rho0 d^D: a block of n particles is n d^D of liquid, with no hidden volume factor.
+// The state of every particle solver: positions and velocities in double precision, one array per axis, and their domain. The mass of a
+// particle is rho0 d^D: a block of n particles is a liquid volume of n d^D, without a hidden factor.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/solver.hpp"
@@ -10,21 +10,21 @@
 
 namespace weir::particles {
 
-/// The state's arrays follow the sorted order this often, so that gathers stay near in memory.
+/// Steps between reorderings of the state's arrays to the sorted order, which keep gathers local.
 inline constexpr std::int64_t steps_between_reorders = 16;
 
 template <int D>
 struct Fluid {
     Domain<D> domain;
     std::array<std::vector<real>, D> x, v;  // [m], [m/s]
-    std::vector<real> id;                   // in order of birth; particles change places in the arrays
+    std::vector<real> id;                   // in order of creation; particles change their index in the arrays
     std::vector<real> density;              // of the last step [kg/m^3]
-    std::vector<real> carried;              // a number that the solver keeps for each particle (PBF: the multiplier over dt^2)
-    bool warm = false;                      // whether they carry heat
-    std::vector<real> enthalpy;             // then: specific [J/kg]
-    bool shared = false;                    // whether this rank holds its own alone, among several
-    std::vector<real> place;                // then: where each would stand among all in the arrays of one process, in that order
-    real next_place = 0;                    // of a particle that enters
+    std::vector<real> carried;              // one number of the solver per particle (PBF: the multiplier over dt^2)
+    bool warm = false;                      // whether particles have heat
+    std::vector<real> enthalpy;             // specific enthalpy, where warm [J/kg]
+    bool shared = false;                    // distributed storage: this rank has only its own particles
+    std::vector<real> place;                // where shared: index of each particle in the arrays of one process
+    real next_place = 0;                    // of the next particle that enters
     real rho0 = 1, mass = 1;                // [kg/m^3], [kg] (2D: per metre of depth)
     real time = 0;                          // [s]
     std::int64_t steps = 0;
@@ -33,8 +33,8 @@ struct Fluid {
     Clamps clamps;
 
     Fluid() = default;
-    /// Particles of the scene's "liquid" shapes on the lattice of the grid's cell centres, outside solids. Over ranks each begins with as
-    /// many of them.
+    /// Creates particles in the scene's "liquid" shapes, on the lattice of the grid's cell centres, outside solids. In parallel each rank
+    /// starts with an equal number of them.
     explicit Fluid(const scene::Scene& scene);
 
     int count() const { return static_cast<int>(id.size()); }
@@ -53,7 +53,7 @@ struct Fluid {
         for (std::size_t a = 0; a < D; ++a) c[a] = f[a].data();
         return c;
     }
-    /// Over ranks that share particles the first takes it.
+    /// With distributed particles, rank 0 stores it.
     void add(const Vec<D>& at, const Vec<D>& velocity, real h = 0);
     void resize(int count);
     /// f(array) for every array of the state.
@@ -64,22 +64,22 @@ struct Fluid {
         if (warm) f(enthalpy);
         if (shared) f(place);
     }
-    /// The particles of all ranks as one process has them, to all ranks; all call it together.
+    /// Gathers the particles of all ranks, in the order of one process, on all ranks; collective.
     void gather(Fluid& all) const;
-    /// Of the particles of all ranks as one process has them each rank as many as any other; all call it together.
+    /// Distributes the particles of all ranks, in the order of one process, in equal parts; collective.
     void deal(Fluid& part) const;
-    /// Takes out the particles for which gone(i) holds; the others keep their order.
+    /// Removes the particles for which gone(i) is true; the others keep their order.
     template <class F>
     void remove_if(F&& gone);
-    /// Repeats periodic axes, takes out what left through open sides.
+    /// Wraps particles at periodic sides and removes those beyond open sides.
     void cross_sides();
-    /// Rearranges the arrays so that particle k is the former order[k].
+    /// Rearranges the arrays: particle k is the former order[k].
     void reorder(const std::vector<int>& order);
     /// The largest speed [m/s]. Throws NumericalFailure naming the quantity when a position or velocity is not finite.
     real max_speed() const;
-    /// The same without a word: not finite where they are not.
+    /// The same without an error: not finite where the state is not.
     real fastest() const;
-    /// What is not finite, if anything is, the last of these; moving: whether positions and velocities can be that.
+    /// The quantity that is not finite, the last of these; moving: whether positions and velocities were checked.
     enum class Quantity { none, pressure, density, velocity, position };
     Quantity broken(bool moving = true) const;
     /// Throws NumericalFailure naming it.
@@ -99,7 +99,7 @@ struct Fluid {
 private:
     void append(const Vec<D>& at, const Vec<D>& velocity, real h, real born, real stands);
     void save_part(Checkpoint& to) const;
-    /// All but the particles.
+    /// Copies everything except the particles.
     void take_setting(const Fluid& from);
 
     std::vector<real> scratch_;
@@ -117,7 +117,7 @@ void Fluid<D>::remove_if(F&& gone) {
     resize(to);
 }
 
-/// Sum of f(i) over [0, count) in blocks of fixed size, so that the sum does not depend on the number of threads.
+/// Sum of f(i) over [0, count) in blocks of fixed size: independent of the number of threads.
 template <class F>
 real block_sum(int count, F&& f) {
     constexpr int block = 2048;
@@ -127,8 +127,8 @@ real block_sum(int count, F&& f) {
         return sum;
     });
 }
-/// The sum of numbers from 0 to 1024 (one that is less or more counts as these) in whole units of 2^-44, and the largest: no order of
-/// adding changes a sum of whole numbers, so it does not depend on who adds which, threads or ranks.
+/// Exact sum of numbers, clamped to [0, 1024], in integer units of 2^-44, and their maximum. Integer sums do not depend on the order of
+/// terms, nor on threads or ranks.
 struct SumAndMost {
     __extension__ typedef __int128 Whole;
     static constexpr real unit = 0x1.0p-44, limit = 1024;
@@ -144,7 +144,7 @@ struct SumAndMost {
 };
 template <class F>
 SumAndMost whole_sum_and_max(int count, F&& f) {
-    constexpr int block = 256;  // whose units an integer holds
+    constexpr int block = 256;  // largest block whose units fit in an integer
     SumAndMost all;
     for_chunks(count, [&](int, int begin, int end) {
         SumAndMost part;
@@ -163,7 +163,7 @@ SumAndMost whole_sum_and_max(int count, F&& f) {
     });
     return all;
 }
-/// The largest of f(i) over [0, count), several at a time in lanes; NaN if any is NaN: once in a lane, nothing compares greater.
+/// Maximum of f(i) over [0, count), vectorized; NaN if any is NaN, since no value compares greater than a NaN in its lane.
 template <class F>
 real block_max(int count, F&& f) {
     constexpr int block = 2048, lanes = 8;

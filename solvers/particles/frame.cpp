@@ -16,7 +16,7 @@ CellGrid Frame::cover(const Box& particles, int count, real radius) const {
         all.lo[a] = lo[a] - width;
         all.hi[a] = lo[a] + period[a] + width;
     }
-    return cover_box(all, count, radius * 1.00001);  // a hair wider than the radius: cells are chosen in double, distances tested in float
+    return cover_box(all, count, radius * 1.00001);  // slightly wider than the radius: cells are computed in double, distances in float
 }
 
 }  // namespace weir::particles

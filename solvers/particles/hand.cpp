@@ -6,10 +6,10 @@ namespace weir::particles {
 
 namespace {
 
-/// A particle is poured where none is nearer than this, in spacings: nearer ones would be pushed apart again.
+/// Minimum distance of a poured particle from others, in spacings: closer ones would be pushed apart.
 constexpr real room = 0.95;
 
-/// The place of the lattice of cell centres below x.
+/// The index of the lattice of cell centres below x.
 template <int D>
 Index<D> cell_below(const Fluid<D>& fluid, const Vec<D>& x) {
     Index<D> I;
@@ -17,7 +17,7 @@ Index<D> cell_below(const Fluid<D>& fluid, const Vec<D>& x) {
     return I;
 }
 
-/// f(I) over [lo, lo + extent), one after the other: what is added keeps one order.
+/// f(I) over [lo, lo + extent), serially: additions have a fixed order.
 template <int D, class F>
 void for_each_serial(const Index<D>& lo, const Index<D>& extent, F&& f) {
     for (std::size_t n = 0, all = product(extent); n < all; ++n) {

@@ -1,5 +1,4 @@
-// The hand on particles: it pushes those that it covers, fills what is empty in its brush with particles a spacing apart, or takes them
-// out.
+// Interactive forcing of particles: pushes those under the brush, fills empty space with particles at the rest spacing, or removes them.
 #pragma once
 #include "geometry/hand.hpp"
 #include "particles/flow.hpp"
@@ -18,9 +17,9 @@ public:
     Stage stage() const override { return Stage::force; }
     void apply(Flow<D>& f, real dt) override;
     std::size_t bytes() const override { return taken_.capacity(); }
-    /// What it adds and takes in the step that begins now: before the neighbours are found.
+    /// Adds and removes particles in the step that begins now: before the neighbour search.
     void pour_and_drain(Fluid<D>& fluid);
-    /// What it heats in that step; the heat that it gives [J].
+    /// Heats particles in that step; returns the heat added [J].
     real warm(Fluid<D>& fluid, const Heat<D>& heat, real dt);
 
 private:
@@ -30,8 +29,8 @@ private:
     void account(const Vec<D>& u, real mass);
 
     std::shared_ptr<Hand> hand_;
-    Brush<D> brush_;                   // of the step that goes on
-    std::vector<std::uint8_t> taken_;  // places of the lattice in the brush's box beside which there is no room
+    Brush<D> brush_;                   // of the present step
+    std::vector<std::uint8_t> taken_;  // lattice sites in the brush's box without free space
 };
 
 }  // namespace weir::particles

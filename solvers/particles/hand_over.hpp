@@ -1,5 +1,5 @@
-// Particles that go from rank to rank: some change hands, with all that the state knows of them, and some are shown, with what is read of a
-// neighbour. Both go in one message to each rank.
+// Exchange of particles between ranks: some migrate, with their whole state, and some are sent as ghost particles, with the arrays that
+// neighbours read. One message to each rank contains both.
 #pragma once
 #include "core/slabs.hpp"
 #include "core/types.hpp"
@@ -11,22 +11,22 @@ namespace weir::particles {
 
 class HandOver {
 public:
-    /// Arrays of the state, the same on all ranks; particle i has entry i in each.
+    /// Arrays of the state, the same on all ranks; particle i is entry i in each.
     using Arrays = std::vector<std::vector<real>*>;
 
-    /// Nothing goes.
+    /// Clears the lists.
     void clear();
     void move(int rank, int i) { moving_[static_cast<std::size_t>(rank)].push_back(i); }
     void show(int rank, int i) { shown_[static_cast<std::size_t>(rank)].push_back(i); }
-    /// Sends what move() and show() named, the former with all arrays and the latter with the first `read`; who is sent to oneself comes
-    /// too. All ranks call it.
+    /// Sends the particles named by move(), with all arrays, and those named by show(), with the first `read` arrays; particles sent to
+    /// this rank itself are included. Collective.
     void trade(const Arrays& arrays, std::size_t read);
-    /// How many have come, and them into entries from `at` on, for which there is room.
+    /// Number of particles received; writes them to the entries from `at` on, which must exist.
     int movers() const { return movers_; }
     int guests() const { return guests_; }
     void take_movers(const Arrays& arrays, std::size_t at) const;
     void take_guests(const Arrays& arrays, std::size_t read, std::size_t at) const;
-    /// How many more particles rank r has for what moved.
+    /// Net change of the number of particles of rank r by migration.
     int gain(int rank) const;
     std::size_t bytes() const;
 

@@ -8,10 +8,10 @@ namespace weir::particles {
 
 namespace {
 
-/// Of the step with which no particle of a lattice becomes warmer than its neighbours. Where particles come closer than a lattice's the
-/// sums grow; they have not been seen to double. Cleary & Monaghan's 0.15 ρ c h²/k is of this size.
+/// Relative to the step at which no particle of a lattice becomes warmer than its neighbours. The sums grow where particles are closer than
+/// in a lattice; they were never observed to double. Cleary & Monaghan's 0.15 ρ c h²/k is of this size.
 constexpr real stable_part = 0.5;
-constexpr int most_parts = 10000;  // of a step: more would be a run that does not end
+constexpr int most_parts = 10000;  // substeps of a step: more would be a run that does not end
 
 }  // namespace
 
@@ -37,8 +37,8 @@ LatticeSums lattice_sums(const Scheme& scheme, real spacing) {
 
 namespace {
 
-/// What a particle of the lowest row of a lattice is multiplied by, `height` above a wall of a temperature: by its own image, which is as
-/// far from the wall's temperature on the other side, twice.
+/// Coefficient of a particle in the lowest row of a lattice, `height` above a wall of fixed temperature: its image, mirrored in temperature
+/// too, counts twice.
 template <int D>
 real diagonal_at_wall(const Kernel<D>& w, real spacing, int reach, real height) {
     const auto weight = [&](real r) {
@@ -60,7 +60,7 @@ real diagonal_at_wall(const Kernel<D>& w, real spacing, int reach, real height) 
 
 }  // namespace
 
-/// At most 1 / stable_part times the diagonal within a lattice.
+/// At most 1 / stable_part times the diagonal for a lattice.
 template <int D>
 real closest_to_wall(const Scheme& scheme, real spacing) {
     const Kernel<D> w = gradient_kernel<D>(scheme, spacing);
@@ -86,7 +86,7 @@ HeatStates heat_states(const thermo::HeatCurve& curve, const std::array<real, 3>
         s.per_c[state] = 1 / curve.heat_capacity(i);
         s.k_c[state] = conductivity[state] / curve.heat_capacity(i);
         if (curve.state(i) == thermo::State::liquid) {
-            s.T = i > 0 ? curve.begins_at(i) : 0;  // of what does not freeze the line goes on to 0 K
+            s.T = i > 0 ? curve.begins_at(i) : 0;  // a substance that does not freeze continues linearly to 0 K
             s.liquid_begin = i > 0 ? curve.lowest(i) : curve.enthalpy(0.0);
             s.solid_end = i > 0 ? curve.highest(i - 1) : s.liquid_begin;
             if (i + 1 < curve.states()) s.liquid_end = curve.highest(i), s.vapour_begin = curve.lowest(i + 1);
@@ -109,7 +109,7 @@ void Heat<D>::set_pairs(const Scheme& scheme) {
     const real closest = closest_to_wall<D>(scheme, spacing_);
     single_walls_.closest = static_cast<float>(closest), plain_walls_.closest = closest;
     real fastest = *std::max_element(std::begin(states_.k_c), std::end(states_.k_c)) / rho0_;  // [m²/s]
-    if (vapour_) fastest = std::max(fastest, states_.k[1] * states_.per_c[2] / rho0_);         // it boils below T_vapour here and there
+    if (vapour_) fastest = std::max(fastest, states_.k[1] * states_.per_c[2] / rho0_);         // it boils below T_vapour in some places
     stable_dt_ = fastest > 0 ? stable_part / (fastest * sums.diagonal) : infinity;
 }
 

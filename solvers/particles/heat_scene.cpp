@@ -1,4 +1,4 @@
-// What a scene says of heat to particles: the substance, what sides and heaters give, temperatures at the start.
+// Heat settings of a scene with particles: the substance, heat from sides and heaters, initial temperatures.
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
 #include "matter/ambient.hpp"
@@ -27,7 +27,7 @@ bool has_liquid(const thermo::HeatCurve& curve) {
     return false;
 }
 
-/// The particles' density, which is that of all states, is one of the liquid or of what it freezes to.
+/// Checks that the particles' density, common to all states, is a density of the liquid or its solid.
 void check_density(const scene::Scene& scene, const thermo::Substance& substance, const HeatStates& states) {
     const real p = scene.number("heat.pressure"), rho = scene.number("fluid.density");
     const bool melts = substance.has(thermo::Boundary::melting);
@@ -41,7 +41,7 @@ void check_density(const scene::Scene& scene, const thermo::Substance& substance
                  "solid " + text(solid) + ", liquid " + text(liquid) + " kg/m^3: this solver uses one density for solid and liquid");
 }
 
-/// At the lowest pressure that the scene tells of: where there is more it boils at a higher enthalpy (Vapour).
+/// At the lowest pressure of the scene: under higher pressure the boiling enthalpy is larger (Vapour).
 thermo::HeatCurve liquid_curve(const scene::Scene& scene, const thermo::Substance& substance) {
     const matter::Ambient ambient(scene);
     const std::string path = ambient.pressure_changes() ? "heat.ambient.keyframes" : "heat.pressure";
@@ -53,7 +53,7 @@ thermo::HeatCurve liquid_curve(const scene::Scene& scene, const thermo::Substanc
     return curve;
 }
 
-/// initial.temperature as a function of place.
+/// initial.temperature as a function of position.
 template <int D>
 std::function<real(const Vec<D>&)> temperature_function(const scene::Scene& scene) {
     const auto& table = scene.root().table("initial.temperature");
@@ -165,7 +165,7 @@ Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
     read_heaters(scene, domain);
 }
 
-/// Frozen particles that move stand further apart, and conduct as the solid does all the same: each of a pair is fewer by a volume's ratio.
+/// Moving ice has a larger spacing but must conduct as the solid: its pair sums are corrected by the volume ratio.
 template <int D>
 void Heat<D>::set_ice(const scene::Scene& scene, const Domain<D>& domain, const thermo::Substance& substance) {
     free_ = scene.text("heat.frozen") == "free";
@@ -203,14 +203,14 @@ std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene& scene) {
     };
 }
 
-/// At the surface, where it boils first.
+/// At the surface, where boiling starts.
 template <int D>
 bool Heat<D>::boils_at_start(real T) const {
     const real more = vapour_ ? vapour_->params().shift[0] : 0;
     return T > heat_temperature(states_.liquid_end + more, more, &states_);
 }
 
-/// The curve's own liquid ends where it boils under the lowest pressure of all times.
+/// The liquid's end at the lowest pressure of all times.
 template <int D>
 real Heat<D>::start_enthalpy(real T) const {
     if (boils_at_start(T)) throw BadInput("at " + scene::number_text(T) + " K the liquid boils");
@@ -218,7 +218,7 @@ real Heat<D>::start_enthalpy(real T) const {
     return T > least ? states_.liquid_end + (T - least) / states_.per_c[1] : curve_.enthalpy(T);
 }
 
-/// Beyond it the particles' own function of the temperature goes on.
+/// Beyond it the particles' own function of temperature continues.
 template <int D>
 real Heat<D>::theta_of_wall(real T) const {
     return vapour_ ? heat_theta_at(T, &states_) : heat_theta(curve_.enthalpy(T), 0, &states_);
@@ -271,7 +271,7 @@ void Heat<D>::read_exchange(const scene::Scene& scene, int axis, int end, const 
     exchanges_.push_back({axis, end, scene.number(path + ".exchange")});
 }
 
-/// In a part of a step no particle, even one in a corner, becomes warmer than the surroundings.
+/// Within a substep no particle, even in a corner, becomes warmer than the surroundings.
 template <int D>
 void Heat<D>::limit_exchange() {
     real fastest = 0;  // [1/s]
@@ -320,7 +320,7 @@ void Heat<D>::start(const scene::Scene& scene, Fluid<D>& fluid) const {
         const real T = value(fluid.position(i));
         if (!(T >= coldest)) coldest = T;
         hottest = std::max(hottest, T);
-        fluid.enthalpy.push_back(boils_at_start(T) ? states_.vapour_begin : start_enthalpy(T));  // refused below
+        fluid.enthalpy.push_back(boils_at_start(T) ? states_.vapour_begin : start_enthalpy(T));  // rejected below
         if (free_) fluid.density[static_cast<std::size_t>(i)] = rho0_ * rest(fluid.enthalpy.back());
     }
     if (!(coldest > 0))

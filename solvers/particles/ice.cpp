@@ -6,15 +6,15 @@ namespace weir::particles {
 
 namespace {
 
-/// Two frozen particles hold to each other within this many spacings of the liquid: the nearest ones of any lattice do, also of a wider one
-/// (1.044 spacings in 2D, of ice), and those of a liquid that froze where it was; the next ones, at 1.48, do not.
+/// Distance, in spacings of the liquid, within which two frozen particles are bonded. It includes the nearest neighbours of any lattice,
+/// also of a wider one (1.044 spacings in 2D, of ice), and those of liquid that froze in place, but not the next ones, at 1.48.
 constexpr real reach_in_spacings = 1.3;
-/// And to a wall: half a spacing of the solid away, and as much again.
+/// The same for a wall: half a spacing of the solid, plus the same margin.
 constexpr real wall_reach_in_spacings = 1.05;
-/// Sweeps over walls and solids; what is left of depth after them is taken out of the place alone.
+/// Sweeps over walls and solids; the remaining depth is corrected in the particles' positions alone.
 constexpr int contact_sweeps = 8;
-constexpr real contact_tolerance = 1e-6;  // of a spacing
-/// A moment of inertia of less than this part of the largest is that of points in a line, about which nothing turns.
+constexpr real contact_tolerance = 1e-6;  // relative to a spacing
+/// A moment of inertia below this part of the largest belongs to collinear points, which have no rotation about that axis.
 constexpr real thin = 1e-9;
 
 }  // namespace
@@ -44,7 +44,7 @@ void Ice<D>::move_as_one(Fluid<D>& fluid) {
     }
 }
 
-/// The momentum of points, and the velocity that a body of them has with it.
+/// Momentum of points, and the rigid velocity with the same momentum.
 template <int D>
 void Ice<D>::weigh(const Fluid<D>& fluid, Piece& piece) {
     const real n = piece.count();
@@ -81,7 +81,7 @@ void Ice<D>::weigh(const Fluid<D>& fluid, Piece& piece) {
     piece.impulse = {};
 }
 
-/// The angular velocity that has an angular momentum.
+/// The angular velocity for an angular momentum.
 template <int D>
 Vec<3> Ice<D>::turning(const rigid::Body<D>& body, const Vec<3>& momentum) {
     if constexpr (D == 2) {
@@ -112,7 +112,7 @@ void Ice<D>::fly(real dt) {
     resting_ = dt == 0;
     for (Piece& piece : pieces_) {
         if (resting_ || piece.fixed) continue;
-        piece.body.touches = true;  // along its velocity, which has gravity's push already
+        piece.body.touches = true;  // moves with its velocity, which already includes gravity
         piece.body.fly(dt, {});
         keep_in(piece);
     }
@@ -126,7 +126,7 @@ void Ice<D>::push(Piece& piece, const std::array<real, D + 3>& moves) {
     keep_in(piece);
 }
 
-/// By impulses times time: the centre by the first ones, turning by the others over the inertia.
+/// Displacement by impulses times time: translation by the first ones, rotation by the others over the inertia.
 template <int D>
 void Ice<D>::move(Piece& piece, const std::array<real, D + 3>& impulse) {
     Vec<3> momentum;
@@ -138,7 +138,7 @@ void Ice<D>::move(Piece& piece, const std::array<real, D + 3>& impulse) {
     for (std::size_t k = 0; k < D + 3; ++k) piece.impulse[k] += impulse[k];
 }
 
-/// Out of walls and solids, as positions that are projected (Müller et al. 2020, "Detailed rigid body simulation").
+/// Moves a piece out of walls and solids by position-based contacts (Müller et al. 2020, "Detailed rigid body simulation").
 template <int D>
 void Ice<D>::keep_in(Piece& piece) {
     for (int sweep = 0; sweep < contact_sweeps; ++sweep) {
@@ -151,8 +151,8 @@ void Ice<D>::keep_in(Piece& piece) {
     }
 }
 
-/// One wall pushes at the middle of what is behind it, by what that is deep, each weighted with its depth: a face that lies on a wall stays
-/// on it. Returns the largest depth that it found.
+/// A wall acts at the centroid of the particles behind it, by their mean depth, both weighted by depth: a face resting on a wall stays
+/// there. Returns the largest depth.
 template <int D>
 real Ice<D>::leave(Piece& piece, int axis, int end) {
     const real wall = end ? domain_.keep_hi[axis] : domain_.keep_lo[axis], sign = end ? -1 : 1;
@@ -176,7 +176,7 @@ real Ice<D>::leave(Piece& piece, int axis, int end) {
     return deepest;
 }
 
-/// The deepest particle in a solid.
+/// Corrects the deepest particle in a solid.
 template <int D>
 real Ice<D>::leave_solids(Piece& piece) {
     const auto turned = rigid::rotation<D>(piece.body.orientation);

@@ -1,7 +1,7 @@
-// Ice that moves: a frozen particle holds to its frozen neighbours, and what holds together is one rigid body. It moves as fluid does that
-// is made rigid again (Carlson, Mucha & Turk 2004): the passes of a step treat frozen particles as those of a liquid, and each piece then
-// has the linear and angular momentum of its particles. Forces between two particles cancel, so that both are kept by what happens inside
-// a piece, and exchanged with the liquid without loss. How much room ice takes: heat_state.inl.
+// Moving ice: a frozen particle is bonded to its frozen neighbours, and each connected set is one rigid body, moved as rigid fluid
+// (Carlson, Mucha & Turk 2004). The passes of a step treat frozen particles as liquid; then each piece gets the linear and angular momentum
+// of its particles. Pair forces cancel, so both are conserved inside a piece, and exchanged with the liquid without loss. The volume of
+// ice: heat_state.inl.
 #pragma once
 #include "particles/heat.hpp"
 #include "rigid/body.hpp"
@@ -10,8 +10,8 @@
 
 namespace weir::particles {
 
-/// Where a scene lets ice move, particles that are frozen at the start stand on a lattice of their own, as wide as the solid's density
-/// asks, in the middle of each part of the domain that is frozen.
+/// With moving ice, initially frozen particles are on a lattice of their own, with the spacing of the solid's density, centred in each
+/// frozen part of the domain.
 template <int D>
 void spread_ice(const scene::Scene& scene, Fluid<D>& fluid);
 
@@ -20,21 +20,21 @@ class Ice {
 public:
     Ice(const Heat<D>& heat, const Domain<D>& domain);
 
-    /// The pieces of a state, whose particles get their velocities.
+    /// Finds the pieces of a state and sets the velocities of their particles.
     void find(Fluid<D>& fluid);
-    /// The same pieces after something else has changed velocities.
+    /// The same for unchanged pieces after other changes of velocities.
     void move_as_one(Fluid<D>& fluid);
     int pieces() const { return static_cast<int>(pieces_.size()); }
     const rigid::Body<D>& body(int piece) const { return pieces_[static_cast<std::size_t>(piece)].body; }
-    /// Of a particle of the state: -1 where it is not frozen.
+    /// Piece of a particle of the state: -1 where it is not frozen.
     int piece_of(int i) const { return piece_of_[static_cast<std::size_t>(i)]; }
-    /// Frozen, and to a wall; all that is frozen while the pieces rest.
+    /// Frozen to a wall; or any frozen particle while the pieces are at rest.
     bool fixed(int i) const { return piece_of(i) >= 0 && (resting_ || pieces_[static_cast<std::size_t>(piece_of(i))].fixed); }
 
-    // A step.
-    /// The pieces go on by themselves; walls and solids stop them. dt = 0: they rest, and so do they in what follows.
+    // The parts of a step
+    /// Free motion of the pieces, with contacts at walls and solids. dt = 0: they are at rest in the whole step.
     void fly(real dt);
-    /// After an iteration has moved particles, moved(i, place) from where their pieces had them: the pieces move as all of that together.
+    /// After an iteration has moved particles, moved(i, place) from the position given by their pieces: moves each piece by the total.
     template <class Moved>
     void follow(Moved&& moved) {
         for (Piece& piece : pieces_) {
@@ -49,7 +49,7 @@ public:
             push(piece, all);
         }
     }
-    /// f(i, place) for all particles of pieces that move.
+    /// f(i, place) for all particles of moving pieces.
     template <class F>
     void each_place(F&& f) const {
         for (const Piece& piece : pieces_) {
@@ -61,7 +61,7 @@ public:
             });
         }
     }
-    /// Where the step has brought the pieces, and how fast: what moved them on top of their flight was a velocity times `dt`.
+    /// Sets final positions and velocities of the pieces: their displacement beyond free motion was a velocity times `dt`.
     void arrive(Fluid<D>& fluid, real dt);
 
     std::size_t bytes() const;
@@ -72,7 +72,7 @@ private:
         bool fixed = false;
         rigid::Body<D> body;
         Vec<3> spin_momentum{};             // [kg m²/s]
-        std::array<real, D + 3> impulse{};  // of this step: moves of the centre [m], then angular momentum times time [kg m²]
+        std::array<real, D + 3> impulse{};  // of this step: displacement of the centre [m], then angular momentum times time [kg m²]
         int count() const { return end - begin; }
     };
     static Vec<3> cross(const Vec<D>& a, const Vec<D>& b) {
@@ -86,7 +86,7 @@ private:
         for (int a = 0; a < D; ++a) to[a] = dot(rows[static_cast<std::size_t>(a)], v);
         return to;
     }
-    /// Of K numbers over the members of a piece, in blocks of fixed size.
+    /// Sums of K numbers over the members of a piece, in blocks of fixed size.
     template <std::size_t K, class F>
     std::array<real, K> sums(const Piece& piece, F&& add) {
         constexpr int block = 1024;
@@ -118,13 +118,13 @@ private:
 
     const Heat<D>& heat_;
     const Domain<D>& domain_;
-    real reach_, wall_reach_;  // neighbours hold to each other, and particles to a wall, that are nearer [m]
+    real reach_, wall_reach_;  // maximum distances of bonds between particles, and to a wall [m]
     real mass_ = 0;            // of a particle [kg]
     bool resting_ = false;
     std::vector<Piece> pieces_;
     std::vector<int> members_, piece_of_;
-    std::vector<Vec<D>> rest_;  // of members: from the centre of mass, as the piece was found [m]
-    // Of the search: what is frozen, its trees, and cells as wide as the reach.
+    std::vector<Vec<D>> rest_;  // of members: relative to the centre of mass, when the piece was found [m]
+    // for the search: frozen particles, their trees, and cells of the reach's width
     std::vector<int> frozen_, parent_, start_, sorted_, cell_;
     Index<D> cells_{};
     std::vector<real> sums_;

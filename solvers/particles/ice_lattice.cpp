@@ -1,4 +1,4 @@
-// Where the particles of ice stand at the start: a lattice as wide as its density asks, in the middle of each part that is frozen.
+// Initial particles of ice: a lattice with the spacing of its density, centred in each frozen part.
 #include "particles/ice.hpp"
 #include "geometry/shape.hpp"
 
@@ -9,7 +9,7 @@ namespace weir::particles {
 
 namespace {
 
-/// Cells of the grid that are liquid and frozen, and which of them are neighbours.
+/// Cells of the grid that contain frozen liquid, and their connected parts.
 template <int D>
 struct FrozenCells {
     Index<D> cells;
@@ -54,7 +54,7 @@ struct FrozenCells {
     }
 };
 
-/// The lattice of one part: as many points along each axis as come nearest to filling the box around it, in its middle.
+/// The lattice of one part: along each axis the number of points that best fills its bounding box, centred.
 template <int D, class F>
 void each_point(const FrozenCells<D>& frozen, int part, const Domain<D>& domain, real spacing, F&& f) {
     Index<D> lo = frozen.cells, hi{};

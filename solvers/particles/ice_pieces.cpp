@@ -1,4 +1,4 @@
-// Which frozen particles hold to each other: trees over all pairs of them that are near enough, found through cells.
+// Connected sets of frozen particles: union-find over all pairs within reach, found through cells.
 #include "particles/ice.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ void Ice<D>::list_frozen(const Fluid<D>& fluid) {
     for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
     for (std::size_t f = n; f-- > 0;)
         sorted_[static_cast<std::size_t>(--start_[static_cast<std::size_t>(cell_[f]) + 1])] = static_cast<int>(f);
-    // now start_[c + 1] is where cell c begins
+    // now start_[c + 1] is the start of cell c
 }
 
 template <int D>
@@ -43,7 +43,7 @@ int Ice<D>::root(int f) {
     return static_cast<int>(at);
 }
 
-/// The root of a tree is its first particle: pieces and their order are those of the state, whoever finds them.
+/// The root of a tree is its first particle: pieces and their order follow the state, independent of the search.
 template <int D>
 void Ice<D>::join_neighbours(const Fluid<D>& fluid) {
     const auto n = static_cast<int>(frozen_.size());

@@ -1,5 +1,5 @@
-// Which instruction set the pair passes use on threads: the best that this processor has, or the one that is asked for by name (or by the
-// environment variable WEIR_ISA) so that tests and measurements compare them.
+// The instruction set of the pair passes on threads: the best one of this processor, or the one requested by name (or by the environment
+// variable WEIR_ISA), for comparisons in tests and measurements.
 #pragma once
 #include "particles/passes.hpp"
 
@@ -10,7 +10,7 @@ namespace weir::particles {
 
 /// The instruction sets that this processor can run, best first.
 const std::vector<const PassTable*>& available_passes();
-/// By name ("sse2", "avx2", "avx512"); "" or "auto": WEIR_ISA if set, else the best. Throws BadInput when it cannot run here.
+/// By name ("sse2", "avx2", "avx512"); "" or "auto": WEIR_ISA if set, otherwise the best. Throws BadInput when it does not run here.
 const PassTable& passes_for(std::string_view name);
 
 }  // namespace weir::particles

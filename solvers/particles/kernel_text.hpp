@@ -1,4 +1,4 @@
-// The kernels as text, embedded by CMake from particles/kernels: a device compiles at run time what the processor's path was compiled from.
+// The kernels as text, embedded by CMake from particles/kernels: a device compiles at run time the same text as the processor's path.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ struct KernelText {
 };
 const std::vector<KernelText>& kernel_texts();
 
-/// The named files one after the other, each with its name for the compiler's messages.
+/// The concatenation of the named files, each with its name for the compiler's messages.
 std::string program_of(const std::vector<std::string>& files);
 
 }  // namespace weir::particles

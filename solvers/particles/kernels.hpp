@@ -11,7 +11,7 @@ namespace weir::particles {
 
 enum class KernelKind { poly6, spiky, viscosity, cubic, wendland };
 
-/// The names that scenes use, in the order of KernelKind.
+/// Their names in scenes, in the order of KernelKind.
 const std::vector<std::string>& kernel_names();
 KernelKind kernel_from_name(const std::string& name);
 
@@ -22,7 +22,7 @@ public:
 
     KernelKind kind() const { return kind_; }
     real support() const { return h_; }
-    /// sigma / h^D: the factor before f(q) [1/m^D].
+    /// sigma / h^D: the factor of f(q) [1/m^D].
     real scale() const { return scale_; }
     /// W(r) [1/m^D].
     real value(real r) const;
@@ -41,7 +41,7 @@ private:
     real h_, scale_;
 };
 
-/// Volume that one particle of a lattice of this spacing owns [m^D].
+/// Volume per particle of a lattice with this spacing [m^D].
 template <int D>
 constexpr real cell_volume(real spacing) {
     return D == 2 ? spacing * spacing : spacing * spacing * spacing;

@@ -1,5 +1,5 @@
-// How a particle method is registered: what every one of them has in its schema, and its solver for the backend and the dimension that a
-// scene names.
+// Registration of a particle method: the common part of all schemas, and construction of its solver for the backend and dimension of a
+// scene.
 #pragma once
 #include "particles/flow.hpp"
 #include "particles/scheme.hpp"
@@ -9,7 +9,7 @@ namespace weir::particles {
 
 /// own: the method's name, its "scheme" and effects; in_initial: its keys of "initial"; plain: fields and passes.
 scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::Key>& in_initial);
-/// What of a scene runs in one process only.
+/// Rejects keys that are supported in one process only.
 void refuse_over_ranks(const scene::Scene& scene);
 scene::PlainStep plain_step(std::vector<std::string> more_fields, std::vector<std::string> passes);
 

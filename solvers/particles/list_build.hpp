@@ -1,6 +1,6 @@
-// Building the sliced ELL list for one instruction set: included by pair_passes.cpp only. The candidates of a cell are
-// packed once (nine runs of three cells, cut to the bounding box of the cell's particles grown by the radius), then the cell's particles
-// test them lane by lane, two at a time, and append the hits: in the order of the sorted particles, whatever the lanes.
+// Builds the sliced ELL list for one instruction set: included by pair_passes.cpp only. The candidates of a cell are packed once (nine runs
+// of three cells, cut to the bounding box of the cell's particles grown by the radius). Then the cell's particles test them lane by lane,
+// two particles at a time, and append the hits: in the order of the sorted particles, for any lane count.
 #pragma once
 #include "particles/passes.hpp"
 #include "particles/simd_choose.hpp"
@@ -11,7 +11,7 @@ using weir::particles::Built;
 using weir::particles::ListChunk;
 using weir::particles::ListJob;
 
-/// Particles that look through the candidates together: each candidate is read once for all of them.
+/// Number of particles tested together: each candidate is read once for all of them.
 inline constexpr int at_once = 2;
 
 /// The contiguous runs of sorted particles around a cell: at most nine.
@@ -54,10 +54,10 @@ inline Bounds bounds(const ListJob& job, int cell) {
     }
     return b;
 }
-/// How far a coordinate is outside an interval.
+/// Distance of a coordinate outside an interval.
 inline vf outside(vf x, float lo, float hi) { return x - lower(higher(x, broadcast(lo)), broadcast(hi)); }
 
-/// The candidates of the runs that are closer than the radius to the box of the cell's particles, `lanes` at a time.
+/// Packs the candidates of the runs closer than the radius to the box of the cell's particles, `lanes` at a time.
 inline void pack(const ListJob& job, ListChunk& chunk, int cell, const Runs& runs) {
     const Bounds box = bounds(job, cell);
     float *const to_x = chunk.x, *const to_y = chunk.y, *const to_z = chunk.z, *const to_offset = as_numbers(chunk.offset);
@@ -78,8 +78,8 @@ inline void pack(const ListJob& job, ListChunk& chunk, int cell, const Runs& run
     chunk.packed_cell = cell;
 }
 
-/// Lists, for each of `Count` consecutive particles of the packed cell, the candidates that are closer than the radius and are not the
-/// particle itself, with dummies behind them.
+/// Lists, for each of `Count` consecutive particles of the packed cell, the candidates closer than the radius except the particle itself,
+/// padded with dummies.
 template <int Count>
 inline void find_hits(const ListJob& job, const ListChunk& chunk, int i, std::uint32_t* hits, int stride, int* found, vf dummies) {
     const float *const near_x = chunk.x, *const near_y = chunk.y, *const near_z = chunk.z, *const offset = as_numbers(chunk.offset);
@@ -106,7 +106,7 @@ inline void find_hits(const ListJob& job, const ListChunk& chunk, int i, std::ui
     }
 }
 
-/// hits (one list a lane, each padded to a multiple of four rows) into rows of `lanes` entries, four at a time.
+/// Interleaves hits (one list per lane, each padded to a multiple of four rows) into rows of `lanes` entries, four at a time.
 inline void write_rows(std::uint32_t* entries, const std::uint32_t* hits, int stride, int rows) {
     std::uint32_t lane[lanes];
     for (int l = 0; l < lanes; ++l) lane[l] = static_cast<std::uint32_t>(4 * l * stride);
@@ -120,7 +120,7 @@ inline void write_rows(std::uint32_t* entries, const std::uint32_t* hits, int st
     }
 }
 
-/// Builds slices from chunk.next on; stops, having changed nothing of the slice, where scratch or entries are too small.
+/// Builds slices from chunk.next on; stops before a slice for which scratch or entries are too small.
 inline Built build_list(const ListJob& job, ListChunk& chunk) {
     const vf dummies = same_in_all(static_cast<std::uint32_t>(16 * job.count));
     for (; chunk.next < chunk.end; ++chunk.next) {
@@ -129,7 +129,7 @@ inline Built build_list(const ListJob& job, ListChunk& chunk) {
         int found[lanes];
         for (int i = begin; i < end;) {
             if (i < job.own_begin || i >= job.own_end) {
-                found[i - begin] = -lanes;  // no dummies stand there yet
+                found[i - begin] = -lanes;  // without dummies yet
                 job.neighbours[i++] = 0;
                 continue;
             }

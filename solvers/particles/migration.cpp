@@ -9,11 +9,11 @@ namespace weir::particles {
 
 namespace {
 
-/// The cells of a point's images beyond sides that repeat, as Pairs makes them.
+/// The cells of a point's periodic images, as made by Pairs.
 struct Images {
     const Frame& frame;
     const CellSort& cells;
-    std::array<real, 3> band{};  // 0: the axis does not repeat
+    std::array<real, 3> band{};  // 0: the axis is not periodic
 
     Images(const Frame& f, const CellSort& c, const Box& box, real radius) : frame(f), cells(c) {
         for (std::size_t a = 0; a < 3; ++a) band[a] = f.period[a] > 0 ? f.band(a, box, radius) : 0;
@@ -43,7 +43,7 @@ struct Images {
 
 }  // namespace
 
-/// Box and number of all ranks' particles.
+/// Reduces box and number of particles over all ranks.
 void Migration::meet(const Coordinates& x, int count) {
     struct Own {
         Box box;
@@ -65,13 +65,13 @@ void Migration::meet(const Coordinates& x, int count) {
     }
 }
 
-/// The cells of which lower ones hold a rank's share for each rank before it: its digits are found one after another, the slowest axis
-/// first, from how many particles all ranks have in each plane, then in each row of that plane, then in each cell of that row.
+/// Finds the first cell of each rank such that lower cells contain the shares of all ranks before it. Its digits are found one after
+/// another, the slowest axis first: from global counts per plane, then per row of that plane, then per cell of that row.
 void Migration::choose_cut_points(const CellGrid& grid) {
     const auto cuts = static_cast<std::size_t>(slabs().ranks()) - 1;
-    std::vector<int> chosen(cuts, 0), before(cuts, 0);  // leading digits, and particles before the cells that have them
+    std::vector<int> chosen(cuts, 0), before(cuts, 0);  // leading digits, and number of particles in cells before them
     std::vector<std::array<real, 3>> points(cuts, grid.origin);
-    int behind = grid.cells[0] * grid.cells[1] * grid.cells[2];  // cells that share the leading digits
+    int behind = grid.cells[0] * grid.cells[1] * grid.cells[2];  // cells with the same leading digits
     for (std::size_t a = 3; a-- > 0;) {
         const int digits = grid.cells[a], width = behind / digits;
         if (digits == 1) continue;
@@ -103,7 +103,7 @@ void Migration::find_cut(const CellGrid& grid) {
     std::vector<int> at{0};
     const int all = grid.cells[0] * grid.cells[1] * grid.cells[2];
     for (std::array<real, 3> point : cut_points_) {
-        for (std::size_t a = 0; a < 3; ++a) point[a] = std::max(point[a], grid.origin[a]);  // the liquid may have left the place
+        for (std::size_t a = 0; a < 3; ++a) point[a] = std::max(point[a], grid.origin[a]);  // the liquid may have left that region
         at.push_back(std::clamp(cells_.cell_at(point), at.back(), all));
     }
     at.push_back(all);
@@ -115,7 +115,7 @@ void Migration::find_holders(const Coordinates& x, int count, const Frame& frame
     const Images images(frame, cells_, box_, radius);
     hands_.clear();
     gone_.clear();
-    int first = cut_.begin(self), last = cut_.end(self);  // own cells that no other reads
+    int first = cut_.begin(self), last = cut_.end(self);  // own cells that no other rank reads
     for (int r = 0; r < cut_.ranks(); ++r) {
         if (r == self || cut_.begin(r) == cut_.end(r)) continue;
         if (r < self) first = std::max(first, cut_.end(r) + cut_.far);
@@ -139,7 +139,7 @@ void Migration::find_holders(const Coordinates& x, int count, const Frame& frame
     }
 }
 
-/// Those that have gone leave their entries to the last ones.
+/// Moves the last particles to the entries of those that have left.
 void Migration::rearrange(const HandOver::Arrays& arrays, std::size_t read) {
     const std::size_t stay = arrays[0]->size() - gone_.size(), own = stay + static_cast<std::size_t>(hands_.movers()),
                       all = own + static_cast<std::size_t>(hands_.guests());
@@ -173,7 +173,7 @@ void Migration::apply(const Frame& frame, real radius, int dim, const HandOver::
 int Migration::before() const { return std::accumulate(counts_.begin(), counts_.begin() + slabs().rank(), 0); }
 
 void Migration::balance(real most) {
-    constexpr real few = 32;  // particles: what they take is less than a message
+    constexpr real few = 32;  // particles: fewer cost less than a message
     for (const int count : counts_)
         if (count > (1 + most) * total_ / static_cast<real>(counts_.size()) + few) recut();
 }

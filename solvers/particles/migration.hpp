@@ -1,6 +1,6 @@
-// Over ranks, particles change hands before each search for neighbours: each goes to the rank that owns the cell where it stands now, and
-// is shown to those whose passes read that cell, or that of an image of it. Cells are those of one process, over the box of all particles.
-// Cuts stay where they are until a rank has many more particles than its share.
+// In parallel, particles migrate before each neighbour search: each goes to the rank that owns its present cell. It is also sent as a ghost
+// particle to ranks whose passes read that cell, or the cell of one of its images. Cells are those of one process, over the box of all
+// particles. The partition is kept until a rank has many more particles than its share.
 #pragma once
 #include "particles/frame.hpp"
 #include "particles/hand_over.hpp"
@@ -8,26 +8,26 @@
 
 namespace weir::particles {
 
-/// What a search over ranks knows of the particles that this one does not hold, and where its own stand among all.
+/// Global data of a distributed neighbour search: the other ranks' particles, and the positions of this rank's among all.
 struct Held {
-    Box box;        // of all
-    int total = 0;  // so many are they
+    Box box;        // of all particles
+    int total = 0;  // total number
     const CellCut* cut = nullptr;
-    const real* place = nullptr;  // of each that is held: its number in the order of one process
+    const real* place = nullptr;  // of each particle stored here: its index in the order of one process
 };
 
 class Migration {
 public:
-    /// Takes and gives: entries of `arrays` are then of this rank's own particles, and behind these of those shown to it, of which the
-    /// first `read` arrays are known. The first `dim` are the coordinates by which particles stand in cells. Pairs closer than the radius
-    /// [m]. Throws NumericalFailure on all ranks where a coordinate on any is not finite.
+    /// Migrates. Afterwards the entries of `arrays` are this rank's own particles, followed by its ghost particles, for which only the
+    /// first `read` arrays are valid. The first `dim` arrays are the coordinates that define cells. radius: of the pair search [m]. Throws
+    /// NumericalFailure on all ranks where a coordinate on any rank is not finite.
     void apply(const Frame& frame, real radius, int dim, const HandOver::Arrays& arrays, std::size_t read);
     Held held(const std::vector<real>& place) const { return {box_, total_, &cut_, place.data()}; }
     int own() const { return counts_.empty() ? 0 : counts_[static_cast<std::size_t>(slabs().rank())]; }
     int total() const { return total_; }
-    /// How many particles lower ranks own.
+    /// Number of particles owned by lower ranks.
     int before() const;
-    /// New cuts at the next call where some rank has more than its share by so much.
+    /// Requests a new partition in the next call if some rank exceeds its share by this fraction.
     void balance(real most);
     void recut() { cut_points_.clear(); }
     std::size_t bytes() const;
@@ -40,11 +40,11 @@ private:
     void rearrange(const HandOver::Arrays& arrays, std::size_t read);
 
     CellSort cells_;
-    std::vector<int> cell_;  // of own particles, before they go
+    std::vector<int> cell_;  // of own particles before migration
     Box box_;
     int total_ = 0;
-    std::vector<int> counts_;                      // of each rank's own
-    std::vector<std::array<real, 3>> cut_points_;  // in the first cell of each rank but rank 0
+    std::vector<int> counts_;                      // of each rank's own particles
+    std::vector<std::array<real, 3>> cut_points_;  // in the first cell of each rank except rank 0
     CellCut cut_;
     HandOver hands_;
     std::vector<int> gone_;

@@ -65,7 +65,7 @@ void around(const std::array<int, 3>& n, int cell, F&& f) {
             for (int c = std::max(cx - 1, 0); c <= std::min(cx + 1, n[0] - 1); ++c) f((z * n[1] + y) * n[0] + c);
 }
 
-/// One growing list a cell, filled in the order of the particles; the cells themselves come from the same cover as the sorted grid's.
+/// One growing list per cell, filled in the order of the particles; the cells are those of the sorted grid.
 class UniformGrid final : public NeighbourSearch {
 public:
     const NeighbourLists& find(const Coordinates& x, int count, real radius) override {

@@ -1,6 +1,6 @@
-// Neighbour search by three interchangeable methods, in double precision: brute force with cached lists; a uniform grid with a list a cell;
-// a sort-based grid (Green 2010). All give the same lists, so the choice is only one of time (benchmarks/particles). The solvers' fast
-// path is the third one with lists for vector lanes (pairs.hpp).
+// Neighbour search by three interchangeable methods, in double precision: brute force with cached lists; a uniform grid with a list per
+// cell; a sort-based grid (Green 2010). All give the same lists and differ only in time (benchmarks/particles). The solvers' fast path is
+// the third one with lists for SIMD lanes (pairs.hpp).
 #pragma once
 #include "particles/cell_sort.hpp"
 
@@ -19,7 +19,7 @@ struct NeighbourLists {
 class NeighbourSearch {
 public:
     virtual ~NeighbourSearch() = default;
-    /// Every pair closer than the radius.
+    /// Finds every pair closer than the radius.
     virtual const NeighbourLists& find(const Coordinates& x, int count, real radius) = 0;
 };
 

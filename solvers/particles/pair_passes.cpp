@@ -1,5 +1,5 @@
-// The passes over pairs for one instruction set. CMake compiles this file three times, with WEIR_ISA = 128, 256 and 512 and the flags of
-// that processor; run time picks one (isa.cpp). Nothing here may be an inline function that other files also use.
+// The pair passes for one instruction set. CMake compiles this file three times, with WEIR_ISA = 128, 256 and 512 and the flags of that
+// processor; one is selected at run time (isa.cpp). It must not use inline functions that other files also use.
 #include "particles/list_build.hpp"
 #include "particles/passes.hpp"
 #include "particles/simd.hpp"
@@ -36,7 +36,7 @@ inline void store_numbers(float* to, int first, int count, vf value) {
 }
 inline vf kept(vf x, const WallParams* w, int axis) { return lower(higher(x, broadcast(w->keep_lo[axis])), broadcast(w->keep_hi[axis])); }
 
-/// Adds the lanes that walls put back. Squares of floats that are not negative are ordered as their bits are.
+/// Counts the lanes corrected by walls. Squares of nonnegative floats are ordered like their bits.
 inline void tally_clamps(ClampTally& tally, vf distance2, int begin, int end, const int* order, int particles) {
     if (!any_below(-distance2, -tally.least2)) return;
     long long times = 0;
@@ -55,7 +55,7 @@ inline void tally_clamps(ClampTally& tally, vf distance2, int begin, int end, co
     }
 }
 
-/// Walls and solids at the particles of one slice (walls_combined). Most slices have none near; one near a wall is near one or two.
+/// Walls and solids at the particles of one slice (walls_combined). Most slices have none nearby; a slice near a wall is near one or two.
 inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int first) {
     const vf zero = broadcast(0);
     const vf x[3] = {i.x, i.y, i.z};
@@ -84,14 +84,14 @@ inline Four walls_at(const Four& i, const WallParams* w, const float* solid, int
     return {out[0], out[1], out[2], out[3]};
 }
 
-/// Without loss in a.
+/// sum += a, converted without loss.
 WEIR_ALWAYS void add(vd& sum, vf a) { sum += __builtin_convertvector(a, vd); }
 
-/// The walls within reach of the particles of one slice, by themselves and where they meet: one plane an axis in each image.
+/// The walls within reach of the particles of one slice, single and combined: one plane per axis in each image.
 struct HeatImages {
     struct Image {
-        int planes, plane[3];  // 2 axis, one more for the upper wall
-        bool held;             // the image is as far from theta on the other side
+        int planes, plane[3];  // 2 axis, plus one for the upper wall
+        bool held;             // the image's theta is mirrored
         float theta;
         vf height[3];  // of the slice's particles above the planes
     };
@@ -111,7 +111,7 @@ inline void heat_images(const Four& i, const single::HeatWalls* w, float h, Heat
         if (!any_below(height, h)) continue;
         const bool held = plane % 2 ? w->hi_held[axis] : w->lo_held[axis];
         const float theta = plane % 2 ? w->hi_theta[axis] : w->lo_theta[axis];
-        for (int m = -1; m < before; ++m) {  // the plane by itself, and behind each image so far that lies along other axes
+        for (int m = -1; m < before; ++m) {  // the plane alone, and behind each previous image along other axes
             HeatImages::Image& image = images.of[images.count];
             if (m < 0) {
                 image.planes = 0, image.held = false, image.theta = 0;

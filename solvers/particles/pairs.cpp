@@ -13,7 +13,7 @@ constexpr float not_brought = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
-/// Particles that have images, in the order of one process.
+/// Finds the particles with images, in the order of one process.
 void Pairs::list_near_sides(const Coordinates& x, int count, const Box& particles, real radius, const real* place) {
     near_sides_.clear();
     const auto is_near = [&](int i) {
@@ -29,7 +29,7 @@ void Pairs::list_near_sides(const Coordinates& x, int count, const Box& particle
     if (place) std::sort(near_sides_.begin(), near_sides_.end(), [&](int i, int j) { return place[i] < place[j]; });
 }
 
-/// An image of each particle near a periodic side; corners follow because an axis also copies the images of the axes before it.
+/// Makes an image of each particle near a periodic side; corners follow because an axis also copies the images of previous axes.
 void Pairs::make_images(const Coordinates& x, int count, const Box& particles, real radius, const real* place) {
     image_owner_.clear();
     image_shift_.clear();
@@ -108,7 +108,7 @@ void Pairs::finish(const Coordinates& all, real radius) {
     list_.build(table_, {axis_[0].data(), axis_[1].data(), axis_[2].data()}, cells_, static_cast<float>(radius), shares_.own());
 }
 
-/// What is sorted, to where the passes read it.
+/// Copies sorted positions to the arrays of the passes.
 void Pairs::place(const Coordinates& all) {
     owner_.resize(static_cast<std::size_t>(size()));
     fit(a_, 4);
@@ -176,7 +176,7 @@ real Pairs::largest(real own) const { return shares_.several() ? detail::largest
 
 const std::vector<int>& Pairs::particle_order() {
     if (images() == 0 && !shares_.several()) return cells_.order();
-    sorted_.clear();  // as long as there are particles since find()
+    sorted_.clear();  // valid as long as no particles were added since find()
     for (int k = shares_.own().begin; k < shares_.own().end; ++k)
         if (!is_image(k)) sorted_.push_back(owner(k));
     return sorted_;
@@ -184,13 +184,13 @@ const std::vector<int>& Pairs::particle_order() {
 
 Pairs::NeighbourCounts Pairs::neighbour_counts() const {
     const auto& counts = list_.neighbours();
-    if (total_ == 0 || (counts.empty() && !shares_.several())) return {};  // a rank may own none, and all add up together
+    if (total_ == 0 || (counts.empty() && !shares_.several())) return {};  // a rank may own none, but the sum is collective
     const auto& own = shares_.own();
     const auto count = [&](int k) {
         return is_image(own.begin + k) ? 0.0 : static_cast<real>(counts[static_cast<std::size_t>(own.begin + k)]);
     };
     const int counted = counts.empty() ? 0 : own.count();
-    std::vector<real> sums{block_sum(counted, count)};  // of whole numbers, which no order of adding changes
+    std::vector<real> sums{block_sum(counted, count)};  // of integers, whose sum is independent of the order
     if (shares_.several()) sums = of_ranks(sums[0]);
     return {detail::sum_in_order(sums, static_cast<int>(sums.size())) / total_, largest(block_max(counted, count))};
 }

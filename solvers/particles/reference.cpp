@@ -96,7 +96,7 @@ std::array<double, 4> walls_at(const ReferencePairs& r, const Point& x, std::siz
 double rest_of(const ReferencePairs& r, std::size_t i) { return r.rest.empty() ? 1 : r.rest[i]; }
 
 Point difference(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-/// To the nearest image.
+/// Distance vector to the nearest image.
 Point apart(const Point& a, const Point& b, const Point& period) {
     Point d = difference(a, b);
     for (std::size_t k = 0; k < 3; ++k)
@@ -253,9 +253,9 @@ std::vector<Point> ReferenceSph::accelerations(const std::vector<Point>& x, cons
 
 namespace {
 
-/// One wall, or several that meet, behind which each particle has an image.
+/// One wall, or several combined, behind which each particle has an image.
 struct HeatImage {
-    std::vector<int> planes;  // 2 axis, one more for the upper wall
+    std::vector<int> planes;  // 2 axis, plus one for the upper wall
     bool held = false;
     double theta = 0;
 };

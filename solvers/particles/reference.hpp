@@ -1,6 +1,6 @@
-// The plain double-precision path: every pair of particles is looked at for the neighbours of a step, without threads or
-// vectors. It compiles the same text of the pair physics as the fast path and defines what is right. Steps made of it are the backend
-// "reference" (reference_solver.hpp); its time grows with the square of the number of particles.
+// The reference path in plain double precision: the neighbour search tests every pair of particles, without threads or vectors. It compiles
+// the same text of the pair physics as the fast path and defines the correct result. Its steps are the backend "reference"
+// (reference_solver.hpp); time grows with the square of the number of particles.
 #pragma once
 #include "particles/bodies_in_liquid.hpp"
 #include "particles/domain.hpp"
@@ -11,20 +11,20 @@
 
 namespace weir::particles {
 
-using Point = std::array<double, 3>;  // from the centre of the domain; the third is 0 in 2D
+using Point = std::array<double, 3>;  // relative to the centre of the domain; the third is 0 in 2D
 using Neighbours = std::vector<std::vector<std::size_t>>;
 
-/// What the physics of either method sees of particles: their pairs, walls and solids.
+/// The inputs of both methods' pair physics: pairs, walls and solids.
 struct ReferencePairs {
     plain::WallParams walls{};
     int kernel = 0;            // 0: Müller's, 1: cubic, 2: Wendland
-    Point period{0, 0, 0};     // of axes that repeat, at least two supports; 0: the axis does not
+    Point period{0, 0, 0};     // of periodic axes, at least two supports; 0: the axis is not periodic
     std::vector<Point> solid;  // gradient of the part inside solids at each particle; empty: no solids
     std::vector<double> solid_part;
-    std::vector<double> rest;  // density that each is to have, over rho0; empty: 1
+    std::vector<double> rest;  // rest densities over rho0; empty: 1
     Neighbours neighbours;
 
-    /// Rates of specific enthalpy by conduction, and the part of each that comes from walls held at a temperature.
+    /// Rates of specific enthalpy by conduction, and the part due to walls of fixed temperature.
     struct Warming {
         std::vector<double> rate, by_walls;
     };
@@ -37,28 +37,28 @@ struct ReferencePbf : ReferencePairs {
     plain::PbfParams p{};
     double least_back = 0;
 
-    /// Lines 5-7 of algorithm 1: all pairs closer than the support at the predicted positions; kept through the iterations.
+    /// Lines 5-7 of algorithm 1: all pairs closer than the support at the predicted positions; kept during the iterations.
     void find_neighbours(const std::vector<Point>& x);
 
     std::vector<double> densities(const std::vector<Point>& x) const;
-    /// What this iteration adds to lambda. multiplier: the sums so far, updated; nullptr: every iteration starts from none.
+    /// The increments of lambda in this iteration. multiplier: the sums so far, updated; nullptr: every iteration starts from zero.
     std::vector<double> lambdas(const std::vector<Point>& x, std::vector<double>* multiplier = nullptr) const;
-    /// x + correction, kept inside the walls; what those put back by more than least_back is counted.
+    /// x + correction, kept inside the walls; corrections by walls of more than least_back are counted.
     std::vector<Point> corrected(const std::vector<Point>& x, const std::vector<double>& lambda, Clamps* clamps = nullptr) const;
 };
 
 /// The pair physics of SPH over all pairs.
 struct ReferenceSph : ReferencePairs {
     plain::SphParams p{};
-    bool summed = true;  // density by summation: pairs push by the gradient of its energy
+    bool summed = true;  // density by summation: pair forces are the gradient of its energy
 
-    /// All pairs closer than the support, which the other functions go through.
+    /// Finds all pairs closer than the support, for the other functions.
     void find_neighbours(const std::vector<Point>& x);
 
     std::vector<double> densities(const std::vector<Point>& x) const;
     /// d rho / dt by continuity and diffusion.
     std::vector<double> rates(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho, double rho0) const;
-    /// By surface tension.
+    /// Accelerations by surface tension.
     std::vector<Point> tensions(const std::vector<Point>& x, const std::vector<double>& rho) const;
     std::vector<Point> accelerations(const std::vector<Point>& x, const std::vector<Point>& v, const std::vector<double>& rho,
                                      const std::vector<double>& pressure) const;
@@ -76,11 +76,11 @@ Vec<D> vec_of(const Point& p) {
     for (int a = 0; a < D; ++a) v[a] = p[static_cast<std::size_t>(a)];
     return v;
 }
-/// What solids add at each place (solid_terms.hpp); nothing where the domain has none.
+/// The terms of solids at each position (solid_terms.hpp); empty where the domain has none.
 template <int D>
 void add_solids(ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x);
 
-/// Who of them meets a body, after add_solids.
+/// Finds the coupling pairs of particles and bodies, after add_solids.
 template <int D>
 void meet_bodies(const ReferencePairs& reference, const Domain<D>& domain, const std::vector<Point>& x, std::vector<Meeting<D>>& to);
 

@@ -1,5 +1,5 @@
-// A particle solver in plain double precision over all pairs on one thread, with which every backend is compared (reference.hpp). Its time
-// grows with the square of the number of particles, and its passes allocate what they return.
+// A particle solver in plain double precision over all pairs on one thread: the reference for every backend (reference.hpp). Time grows
+// with the square of the number of particles, and its passes allocate their results.
 #pragma once
 #include "particles/reference.hpp"
 #include "particles/scheme.hpp"
@@ -11,7 +11,7 @@
 
 namespace weir::particles {
 
-/// The effects that a method has here, with the passes in which they act.
+/// The effects supported for a method, with the passes in which they act.
 using ReferenceEffects = std::vector<std::pair<std::string, std::string>>;
 void refuse_what_the_reference_lacks(const scene::Scene& scene, const ReferenceEffects& effects);
 
@@ -24,19 +24,19 @@ public:
 
 protected:
     ReferenceSolver(const Scheme& scheme, Fluid<D>&& start);
-    /// What a scene adds: its emitters and its effects.
+    /// Adds the emitters and effects of a scene.
     void take(const scene::Scene& scene, const ReferenceEffects& effects);
     Pairs::NeighbourCounts neighbour_counts() const final { return counts_of(reference_.neighbours); }
-    /// That the method's own arrays take.
+    /// Bytes of the method's own arrays.
     virtual std::size_t own_bytes() const = 0;
     void end_step();
     /// As on threads.
     void expand();
-    /// Between particles that are at x, whose neighbours are known.
+    /// Conduction between particles at x, whose neighbours are known.
     void conduct_at(const std::vector<Point>& x, real dt);
 
     using HostSolver<D>::fluid_;
-    Physics reference_;  // its numbers p are the method's
+    Physics reference_;  // its parameters p are the method's
 
 private:
     std::vector<EffectPlan> plans_;

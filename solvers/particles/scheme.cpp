@@ -66,7 +66,7 @@ backend::Choice backend_of(const scene::Scene& scene) {
 
 namespace {
 
-/// Of two images of a neighbour within reach, the backend would see one.
+/// Rejects periods in which two images of a neighbour are within reach: the backend uses only one.
 template <int D>
 void check_periods(const std::string& backend, const scene::Scene& scene, std::vector<scene::Problem>& problems) {
     const Domain<D> domain(scene);

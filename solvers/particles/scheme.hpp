@@ -1,5 +1,5 @@
-// What every particle method chooses in "scheme" (kernel, support, backend), and what follows from that alone: the kernels of its sums, the
-// walls as those see them, and the numbers of a kernel that the pair physics reads.
+// The options common to all particle methods in "scheme" (kernel, support, backend) and their consequences: kernels, walls, and kernel
+// parameters of the pair physics.
 #pragma once
 #include "backend/device.hpp"
 #include "particles/domain.hpp"
@@ -14,23 +14,23 @@ enum class Smoothing { muller, cubic, wendland };
 
 struct Scheme {
     Smoothing smoothing = Smoothing::cubic;
-    real support = 2;  // over the spacing
+    real support = 2;  // relative to the spacing
     backend::Choice backend{};
-    bool facing = false;  // how solids face walls counts for what each hides of the other (kernels/pair.inl)
+    bool facing = false;  // the orientation of solids to walls corrects their common part (kernels/pair.inl)
 
-    /// As the scene says.
+    /// Reads the scene's options.
     void read(const scene::Scene& scene);
-    /// Which of the passes' kernels it is (passes.hpp).
+    /// Index of the passes' kernel (passes.hpp).
     int kernel() const { return static_cast<int>(smoothing); }
 };
 
-/// The key "scheme": kernel, support, the method's own keys, backend. usual: what a scene gets that says nothing.
+/// The key "scheme": kernel, support, the method's own keys, backend. usual: the defaults.
 scene::Key scheme_key(const char* doc, const char* kernel_doc, const Scheme& usual, std::vector<scene::Key> own);
-/// Which machinery a scene chose. Throws BadScene where it is none of those known.
+/// The backend of a scene. Throws BadScene for an unknown one.
 backend::Choice backend_of(const scene::Scene& scene);
 
-/// Refuses, all at once, what a backend that looks for the nearest image of a neighbour has not got: effects that are not among these, and
-/// periods in which a pair has two images within reach.
+/// Rejects, in one message, features missing in a backend that uses the nearest image of a neighbour: effects not in this list, and periods
+/// in which a pair has two images within reach.
 void refuse_what_lacks(const std::string& backend, const scene::Scene& scene, const std::vector<std::string>& effects);
 
 template <int D>
@@ -38,7 +38,7 @@ Kernel<D> density_kernel(const Scheme& scheme, real spacing);
 template <int D>
 Kernel<D> gradient_kernel(const Scheme& scheme, real spacing);
 
-/// The walls of the domain as the scheme's kernels see them. Params: single::WallParams or plain::WallParams.
+/// The walls of the domain for the scheme's kernels. Params: single::WallParams or plain::WallParams.
 template <class Params, int D>
 Params wall_params(const Scheme& scheme, const Domain<D>& domain) {
     Params walls = domain.template walls<Params>(density_kernel<D>(scheme, domain.spacing), gradient_kernel<D>(scheme, domain.spacing));
@@ -46,14 +46,14 @@ Params wall_params(const Scheme& scheme, const Domain<D>& domain) {
     return walls;
 }
 
-/// Times a bare profile of pair.inl: the density kernel, the gradient kernel's slope over r, the Laplacian of the one for viscosity.
+/// Factors of the bare profiles of pair.inl: the density kernel, the gradient kernel's slope over r, the Laplacian of the viscosity kernel.
 struct ProfileFactors {
     real density = 0, gradient = 0, laplacian = 0;
 };
 template <int D>
 ProfileFactors profile_factors(const Scheme& scheme, real spacing);
 
-/// The numbers of the kernels in PbfParams and SphParams, times what a particle adds: its volume or its mass.
+/// The kernel factors in PbfParams and SphParams, times a particle's volume or mass.
 template <int D, class Params>
 void set_kernels(Params& p, const Scheme& scheme, real spacing, real particle) {
     using Number = decltype(Params::h);

@@ -14,7 +14,7 @@ void Shares::set(const CellCut& cut, const CellSort& cells) {
     read_ = {before(cut.read(self)[0]), before(cut.read(self)[1])};
 }
 
-/// Appends what `to` gets from `from`, one of which is this rank, in the order of cells: of `from`, which owns them, that of its sort.
+/// Appends the particles that `to` receives from `from`, one of which is this rank, in the order of cells and of the sort of `from`.
 void Shares::list_halo(const CellSort& cells, int particles, std::span<const Link> links, int from, int to, std::vector<int>& list) const {
     const auto cell = [&](int k) { return cells.cell_of()[static_cast<std::size_t>(k)]; };
     const auto before = static_cast<std::ptrdiff_t>(list.size());

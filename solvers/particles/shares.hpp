@@ -1,6 +1,6 @@
-// Whose particles are whose where several ranks run one scene (core/slabs.hpp). Cells are cut into ranges, one a rank: nearly slabs of the
-// slowest axis. What the passes over a range read beside it stands between the cells around its first and those around its last. A rank
-// sorts its own particles and what others have shown it (migration.hpp). One rank owns and reads everything.
+// Partition of particles among several ranks (core/slabs.hpp). Cells are divided into contiguous ranges, one per rank: nearly slabs of the
+// slowest axis. The passes of a range also read the cells around its first and last cells. A rank sorts its own and its ghost particles
+// (migration.hpp). A single rank owns and reads everything.
 #pragma once
 #include "core/slabs.hpp"
 #include "particles/cell_sort.hpp"
@@ -21,12 +21,12 @@ struct Entries {
     bool operator==(const Entries&) const = default;
 };
 
-/// An image beyond a side that repeats: where it and its particle stand among the sorted, and its number among images.
+/// A periodic image: its index and its particle's index among the sorted, and its index among images.
 struct Link {
     int image, particle, number;
 };
 
-/// Which cells are whose: rank r owns [at[r], at[r + 1]), and reads from a plane, a row and a cell before them to as many behind.
+/// The partition of cells: rank r owns [at[r], at[r + 1]), and reads from a plane, a row and a cell before them to as many behind.
 struct CellCut {
     std::vector<int> at;
     int far = 0;
@@ -38,7 +38,7 @@ struct CellCut {
     int begin(int rank) const { return at[static_cast<std::size_t>(rank)]; }
     int end(int rank) const { return at[static_cast<std::size_t>(rank) + 1]; }
     int owner(int cell) const { return static_cast<int>(std::upper_bound(at.begin() + 1, at.end() - 1, cell) - at.begin()) - 1; }
-    /// [first, last), none where it owns none.
+    /// [first, last), empty where it owns none.
     std::array<int, 2> read(int rank) const {
         if (begin(rank) == end(rank)) return {begin(rank), begin(rank)};
         return {std::max(0, begin(rank) - far), std::min(at.back(), end(rank) + far)};
@@ -48,26 +48,26 @@ struct CellCut {
 
 class Shares {
 public:
-    /// One rank's.
+    /// A single rank.
     void own_all(int count) { own_ = read_ = {0, count}; }
-    /// Among what this rank has sorted.
+    /// Finds the ranges among this rank's sorted particles.
     void set(const CellCut& cut, const CellSort& cells);
-    /// What travels, over several ranks: to each rank the particles that its passes read, and those whose images they read. Entries from
-    /// the sort's `particles` on are images.
+    /// Finds the messages between several ranks: to each rank the particles that its passes read, and those whose images they read. Entries
+    /// from the sort's `particles` on are images.
     void find_halos(const CellSort& cells, int particles, std::span<const Link> links);
 
     bool several() const { return cut_.ranks() > 1; }
     const Entries& own() const { return own_; }
     const Entries& read() const { return read_; }
-    /// The sorted particles that a rank gets from this one, and those that it sends.
+    /// The sorted particles that this rank sends to a rank, and those that it receives.
     std::span<const int> sent_to(int rank) const { return part(sends_, send_begins_, rank); }
     std::span<const int> got_from(int rank) const { return part(gets_, get_begins_, rank); }
 
-    /// Brings the halo: pack(k, numbers) writes the `width` numbers of a particle, unpack(k, numbers) takes those of another rank's, and
-    /// where halos are poisoned spoil(k) makes NaN of what stayed behind.
+    /// Halo exchange: pack(k, numbers) writes the `width` numbers of a particle, unpack(k, numbers) reads those of a ghost particle. In
+    /// tests with poisoned halos, spoil(k) sets stale ones to NaN.
     template <class T, class Pack, class Unpack, class Spoil>
     void trade(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil);
-    /// spoil(k) for all entries of which nothing is known here.
+    /// spoil(k) for all entries without valid values here.
     template <class Spoil>
     void poison(Spoil&& spoil) const;
     std::size_t bytes() const;
@@ -83,9 +83,9 @@ private:
     CellCut cut_;
     Entries own_, read_;
     int count_ = 0;                  // of sorted entries
-    std::vector<int> sends_, gets_;  // for one rank after the other
+    std::vector<int> sends_, gets_;  // rank by rank
     std::vector<std::size_t> send_begins_, get_begins_;
-    std::vector<unsigned char> sent_, got_;  // bytes of numbers
+    std::vector<unsigned char> sent_, got_;  // message bytes
     std::vector<Parcel> parcels_;
 };
 

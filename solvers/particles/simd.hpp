@@ -1,11 +1,11 @@
-// Lanes of floats for one instruction set, chosen by the macro WEIR_ISA (512: AVX-512, 256: AVX2 and FMA, 128: SSE2). This text is
-// compiled once for each, so everything here is internal to the including file and uses no inline function of std: one that was compiled
-// for a newer processor could otherwise be linked into the path of an older one.
+// SIMD lanes of floats for one instruction set, selected by the macro WEIR_ISA (512: AVX-512, 256: AVX2 and FMA, 128: SSE2). This text is
+// compiled once for each, so everything here is internal to the including file and uses no inline function of std: one compiled for a newer
+// processor could otherwise be linked into the path of an older one.
 #pragma once
 #include <immintrin.h>
 #include <cstdint>
 
-/// Without it compilers call, and pass registers through memory.
+/// Without it compilers generate calls and pass registers through memory.
 #define WEIR_ALWAYS [[gnu::always_inline]] inline
 
 namespace {
@@ -21,7 +21,7 @@ inline constexpr int lanes = 4;
 typedef float vf __attribute__((vector_size(4 * lanes), may_alias));
 typedef int whole __attribute__((vector_size(4 * lanes), may_alias));
 
-/// As many doubles.
+/// The same number of doubles.
 typedef double vd __attribute__((vector_size(8 * lanes), may_alias));
 
 /// The four components of `lanes` particles.
@@ -42,14 +42,14 @@ inline vf higher(vf a, vf b) { return (vf)_mm512_max_ps((__m512)a, (__m512)b); }
 /// a b + c and c - a b, rounded once.
 inline vf fma(vf a, vf b, vf c) { return (vf)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c); }
 inline vf fnma(vf a, vf b, vf c) { return (vf)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c); }
-/// Four quarters, one a particle, into one register, by halves: cheaper than a masked broadcast for each.
+/// Combines four quarters, one per particle, into one register, by halves: faster than a masked broadcast for each.
 WEIR_ALWAYS __m256 half(const float* base, std::uint32_t first, std::uint32_t second) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(at(base, first))), _mm_load_ps(at(base, second)), 1);
 }
 WEIR_ALWAYS __m512 quarters(const float* base, const std::uint32_t* o) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(half(base, o[0], o[4])), half(base, o[8], o[12]), 1);
 }
-/// Gathers by 128-bit loads and a 4 x 4 transpose in each quarter: a hardware gather makes every pass twice as slow.
+/// Gathers by 128-bit loads and a 4 x 4 transpose in each quarter: a hardware gather doubles the time of every pass.
 WEIR_ALWAYS Four gather(const float* base, const std::uint32_t* o) {
     const __m512 a = quarters(base, o), b = quarters(base, o + 1), c = quarters(base, o + 2), d = quarters(base, o + 3);
     const __m512 ab_lo = _mm512_unpacklo_ps(a, b), ab_hi = _mm512_unpackhi_ps(a, b);
@@ -83,7 +83,7 @@ inline vf broadcast(float a) { return (vf)_mm_set1_ps(a); }
 inline vf max0(vf a) { return (vf)_mm_max_ps((__m128)a, _mm_setzero_ps()); }
 inline vf lower(vf a, vf b) { return (vf)_mm_min_ps((__m128)a, (__m128)b); }
 inline vf higher(vf a, vf b) { return (vf)_mm_max_ps((__m128)a, (__m128)b); }
-/// SSE2 has none: the one instruction set whose bits are its own.
+/// SSE2 has no FMA: its results differ in the last bits from the other sets.
 inline vf fma(vf a, vf b, vf c) { return a * b + c; }
 inline vf fnma(vf a, vf b, vf c) { return c - a * b; }
 WEIR_ALWAYS Four gather(const float* base, const std::uint32_t* o) {
@@ -124,7 +124,7 @@ inline void store(float* base, int first, int count, const Four& f) {
     }
 }
 
-/// Whether any lane is below a bound.
+/// Returns whether any lane is below a bound.
 inline bool any_below(vf a, float bound) {
 #if WEIR_ISA == 512
     return _mm512_cmp_ps_mask((__m512)a, _mm512_set1_ps(bound), _CMP_LT_OQ) != 0;

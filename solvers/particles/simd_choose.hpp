@@ -1,4 +1,4 @@
-// Choosing lanes: what building the neighbour list needs beyond simd.hpp. Bit l of a mask stands for lane l.
+// Selecting lanes: additions to simd.hpp for building the neighbour list. Bit l of a mask is lane l.
 #pragma once
 #include "particles/simd.hpp"
 
@@ -19,12 +19,12 @@ inline const float* as_numbers(const std::uint32_t* bits) { return reinterpret_c
 #if WEIR_ISA == 512
 
 inline unsigned below(vf a, float bound) { return _mm512_cmp_ps_mask((__m512)a, _mm512_set1_ps(bound), _CMP_LT_OQ); }
-/// Lanes of a below the bound whose offset is not that of the particle itself.
+/// Lanes of a below the bound, except the particle itself.
 inline unsigned below_of_others(vf a, float bound, vf offset, std::uint32_t self) {
     const __mmask16 others = _mm512_cmpneq_epi32_mask((__m512i)offset, _mm512_set1_epi32(static_cast<int>(self)));
     return _mm512_mask_cmp_ps_mask(others, (__m512)a, _mm512_set1_ps(bound), _CMP_LT_OQ);
 }
-/// Writes the chosen lanes one after the other (and something up to a full vector behind them); returns how many they are.
+/// Writes the selected lanes contiguously (and unspecified values up to a full vector behind them); returns their number.
 inline int store_chosen(float* to, vf a, unsigned chosen) {
     _mm512_storeu_ps(to, _mm512_maskz_compress_ps(static_cast<__mmask16>(chosen), (__m512)a));
     return __builtin_popcount(chosen);
@@ -32,7 +32,7 @@ inline int store_chosen(float* to, vf a, unsigned chosen) {
 
 #elif WEIR_ISA == 256
 
-/// For each mask of eight lanes: the chosen lanes first.
+/// For each mask of eight lanes: the selected lanes first.
 struct CompressTable {
     std::uint32_t lane[256][8];
     constexpr CompressTable() : lane{} {
@@ -86,14 +86,14 @@ struct Block {
 };
 alignas(64) constexpr Block block;
 
-/// The lanes of a block that hold the particles which are left in a run.
+/// The lanes of a block that contain the remaining particles of a run.
 inline unsigned block_lanes(int left) { return left < lanes ? (1u << left) - 1 : (1u << (lanes - 1) << 1) - 1; }
 /// The same bits in all lanes.
 inline vf same_in_all(std::uint32_t bits) {
     typedef std::uint32_t words __attribute__((vector_size(4 * lanes), may_alias));
     return (vf)(words{} + bits);
 }
-/// Byte offsets of the float4 of a block that begins at particle i, as the bits of lanes.
+/// Byte offsets of the float4 of a block starting at particle i, as the bits of lanes.
 inline vf block_offsets(int i) {
     typedef int vi __attribute__((vector_size(4 * lanes), may_alias));
     return (vf)(*reinterpret_cast<const vi*>(block.byte_offset) + 16 * i);

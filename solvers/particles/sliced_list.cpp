@@ -9,7 +9,7 @@ namespace weir::particles {
 
 namespace {
 
-/// So many and no more: a vector that only resizes takes twice what it had.
+/// Resizes without spare capacity: std::vector would double it.
 template <class T>
 void resize_exactly(std::vector<T>& v, std::size_t count) {
     v.reserve(count);
@@ -36,7 +36,7 @@ void SlicedList::prepare(Chunk& chunk, int t, const Entries& slices, int lanes) 
 void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
     ListChunk& v = chunk.view;
     ++chunk.growths;
-    const std::size_t room = (v.needed + v.needed / 4 + 1024) / 16 * 16;  // lists of hits begin where registers like it
+    const std::size_t room = (v.needed + v.needed / 4 + 1024) / 16 * 16;  // aligned lists of hits
     if (room * sizeof(std::uint32_t) * (why == Built::needs_candidates ? static_cast<std::size_t>(lanes) : chunks_.size()) > max_bytes)
         throw NumericalFailure("neighbours", "the neighbour list needs more than " + std::to_string(max_bytes >> 20) +
                                                  " MiB: too many particles are closer than the support");
@@ -54,8 +54,8 @@ void SlicedList::grow(Chunk& chunk, Built why, int lanes) const {
     v.packed_cell = -1;
 }
 
-/// So that a liquid that a lattice started, some of whose pairs stand at just the radius (8 of 48 in 2D at four spacings), does not ask
-/// again: at first there is half as much room again, later an eighth.
+/// Initially half more capacity, later an eighth. A lattice has pairs at exactly the radius (8 of 48 in 2D at four spacings), so lists grow
+/// soon after the start.
 void SlicedList::make_room_ahead(Chunk& chunk) const {
     ListChunk& v = chunk.view;
     const std::size_t wanted = v.used + (chunk.roomy ? v.used / 8 : v.used / 2);

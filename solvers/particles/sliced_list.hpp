@@ -1,5 +1,6 @@
-// The neighbour list of the fast path (sliced ELL): storage that follows need. A chunk of slices belongs to one thread, which builds it
-// and later runs the passes over it. Where a chunk's room is too small the builder stops, the room grows, the builder goes on.
+// The neighbour list of the fast path (sliced ELL), with storage that grows as needed. A chunk of slices belongs to one thread, which
+// builds it and later runs the passes over it. Where its capacity is too small the builder stops, the storage grows, and the builder
+// continues.
 #pragma once
 #include "particles/cell_sort.hpp"
 #include "particles/passes.hpp"
@@ -12,15 +13,15 @@ namespace weir::particles {
 
 class SlicedList {
 public:
-    /// axis: coordinates of `count` sorted particles, and room for `lanes` more behind them. Pairs closer than `radius` [m].
-    /// Throws NumericalFailure when the list would need more than `max_bytes`.
+    /// axis: coordinates of `count` sorted particles, with space for `lanes` more. Pairs closer than `radius` [m]. Throws NumericalFailure
+    /// when the list would need more than `max_bytes`.
     void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius) {
         build(table, axis, cells, radius, {0, cells.count()});
     }
-    /// The same of some of them, and of those that share a slice with them.
+    /// The same for some particles, and those that share a slice with them.
     void build(const PassTable& table, const std::array<const float*, 3>& axis, const CellSort& cells, float radius, const Entries& own);
 
-    /// f(chunk) for every chunk, one a thread.
+    /// f(chunk) for every chunk, one per thread.
     template <class F>
     void each_chunk(F&& f) const {
         const int chunks = static_cast<int>(chunks_.size());
@@ -29,14 +30,14 @@ public:
     const std::size_t* first() const { return first_.data(); }
     const int* rows() const { return rows_.data(); }
     int slices() const { return static_cast<int>(rows_.size()); }
-    /// Neighbours of each sorted particle.
+    /// Number of neighbours of each sorted particle.
     const std::vector<int>& neighbours() const { return neighbours_; }
-    /// How often the room was too small, over all builds.
+    /// Number of reallocations over all builds.
     int growths() const;
     std::size_t bytes() const;
 
     std::size_t max_bytes = std::size_t{6} << 30;
-    std::size_t entries_at_first = 0;  // room of a fresh chunk in entries; 0: 44 a particle (tests start smaller)
+    std::size_t entries_at_first = 0;  // initial capacity of a chunk in entries; 0: 44 per particle (tests start smaller)
 
 private:
     struct Chunk {
@@ -44,7 +45,7 @@ private:
         std::vector<std::uint32_t> entries, offset, hits;
         std::vector<float> x, y, z;
         int growths = 0;
-        bool roomy = false;  // has had room made ahead
+        bool roomy = false;  // spare capacity was added
         std::string failure;
     };
     void prepare(Chunk& chunk, int t, const Entries& slices, int lanes);

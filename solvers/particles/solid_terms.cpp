@@ -15,7 +15,7 @@ using plain::WallParams;
 template <int D>
 void SolidTerms<D>::mark(Pairs& pairs) {
     if (domain_.solids.empty()) return;
-    const real reach = 1 / walls_.inv_h + 2 * domain_.spacing;  // the support, and what the corrections of one step may move a particle
+    const real reach = 1 / walls_.inv_h + 2 * domain_.spacing;  // the support, plus the displacement by the corrections of one step
     flag_.resize(static_cast<std::size_t>(pairs.size()));
     pairs.fit(terms_, 4);
     std::fill(terms_.begin(), terms_.end(), 0.0f);

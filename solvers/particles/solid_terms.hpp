@@ -1,6 +1,6 @@
-// What solids add at the particles near them (density maps, Koschier & Bender 2017, for surfaces flat on the scale of the support): the
-// kernel's part inside a solid at distance phi is its part behind a plane at that distance. Only particles that start the step near a
-// solid are visited, and solids far away cost nothing.
+// Terms of solids at nearby particles (density maps, Koschier & Bender 2017, for surfaces flat on the scale of the support). The part of
+// the kernel inside a solid at distance phi is its part behind a plane at that distance. Only particles that start the step near a solid
+// are visited; distant solids cost nothing.
 #pragma once
 #include "particles/bodies_in_liquid.hpp"
 #include "particles/domain.hpp"
@@ -17,8 +17,7 @@ Vec<D> world_of(const Domain<D>& domain, const float* four) {
     return x;
 }
 
-/// Of each particle of the list, the body next to it, if one is, and its term (float4, as passes read them) as walls beside it let the
-/// particle see it.
+/// For each particle of the list, the nearest body, if any, and its term (float4, in the layout of the passes), reduced by adjacent walls.
 template <int D>
 void meet_bodies(const Domain<D>& domain, const plain::WallParams& walls, const std::vector<int>& near, const float* positions,
                  const float* terms, std::vector<Meeting<D>>& to);
@@ -26,21 +25,21 @@ void meet_bodies(const Domain<D>& domain, const plain::WallParams& walls, const 
 template <int D>
 class SolidTerms {
 public:
-    /// walls: for the two series. Empty domains of solids make every call a no-op.
+    /// walls: for the two series. With an empty set of solids every call is a no-op.
     SolidTerms(const Domain<D>& domain, const plain::WallParams& walls) : domain_(domain), walls_(walls) {}
-    /// Finds the particles that can meet a solid in this step.
+    /// Finds the particles that can reach a solid in this step.
     void mark(Pairs& pairs);
-    /// The terms at these positions (float4, as the passes read them), or nullptr without solids.
+    /// The terms at these positions (float4, in the layout of the passes), or nullptr without solids.
     const float* at(const Pairs& pairs, const float* positions);
-    /// Those of the last call of at(), where nothing has moved since.
+    /// The terms of the last call of at(), valid where nothing has moved since.
     const float* there() const { return domain_.solids.empty() ? nullptr : terms_.data(); }
-    /// f(k, place, terms) for the particles that can meet a solid; the terms are those of the last call of at().
+    /// f(k, place, terms) for the particles that can reach a solid; the terms are those of the last call of at().
     template <class F>
     void each_near(const float* positions, F&& f) const {
         for (const int k : near_) f(k, world(positions + 4 * k), terms_.data() + 4 * k);
     }
     const std::vector<int>& near() const { return near_; }
-    /// Of each particle that can meet a solid, the body next to it, if one is, and its term as walls beside it let the particle see it.
+    /// For each particle that can reach a solid, the nearest body, if any, and its term, reduced by adjacent walls.
     void meet(const float* positions, std::vector<Meeting<D>>& to) const {
         meet_bodies(domain_, walls_, near_, positions, terms_.data(), to);
     }

@@ -64,7 +64,7 @@ void ParticleSolver<D>::restore(const Checkpoint& from) {
     if (heat_) heat_->restore(from);
 }
 
-/// Each has its part.
+/// Each rank has its part.
 template <int D>
 class HostSolver<D>::Brought final : public Solver::Brought {
 public:
@@ -110,7 +110,7 @@ void HostSolver<D>::restore_state(const Checkpoint& from) {
     if (hand_ && from.has("hand")) hand_->restore(from);
     if (this->bodies_) this->bodies_->restore(from, fluid_.domain);
     const std::string key = std::string(this->method()) + ".speed";
-    speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // the device does not keep it
+    speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // devices do not store it
 }
 
 template <int D>
@@ -148,7 +148,7 @@ void refuse_outside(const Fluid<D>& fluid, int first) {
 
 }  // namespace
 
-/// Neighbours and densities are found anew in every step: there is nothing else that would have to follow.
+/// Neighbours and densities are recomputed in every step: nothing else must be updated.
 template <int D>
 std::vector<EditableField> ParticleSolver<D>::editable() {
     Fluid<D>& fluid = writable();
@@ -159,7 +159,7 @@ std::vector<EditableField> ParticleSolver<D>::editable() {
     return {std::move(position), std::move(velocity)};
 }
 
-/// What a particle carried from its last place is forgotten.
+/// Clears the solver's numbers of a moved particle.
 template <int D>
 void ParticleSolver<D>::edited(const EditableField& field) {
     Fluid<D>& fluid = writable();

@@ -1,11 +1,12 @@
-// Liquid that solids squeeze: where the mean particle is compressed by a tenth there is no room left, and what goes on is no liquid.
+// Detects liquid compressed between solids: at a mean compression of a tenth there is no volume left for it, and the result is no longer a
+// liquid.
 #pragma once
 #include "particles/fluid.hpp"
 
 namespace weir::particles {
 
-/// Throws NumericalFailure where solids move as the scene says and the mean compression is beyond a tenth: at Mach 0.3, where a liquid of
-/// small compressibility ends, density differs by that much, and of incompressible liquid it is no error of a solve.
+/// Throws NumericalFailure where solids have prescribed motion and the mean compression exceeds a tenth. Density differs by that much at
+/// Mach 0.3, the limit of a weakly compressible liquid; in an incompressible method it is not a solver error.
 template <int D>
 void require_room(const Fluid<D>& fluid, real mean_compression);
 

@@ -8,7 +8,7 @@ namespace weir::particles {
 
 namespace {
 
-/// A rank with so much more than its share keeps the others waiting for longer than new cuts take, which are found in a message an axis.
+/// Load imbalance, relative to a rank's share, above which repartitioning (one message per axis) costs less than waiting.
 constexpr real worth_a_new_cut = 0.03;
 
 }  // namespace
@@ -85,7 +85,7 @@ typename ThreadedSolver<D>::StepEnd ThreadedSolver<D>::end_step(const SumAndMost
     return end;
 }
 
-/// One message a step says how it went.
+/// Collective check: one message per step.
 template <int D>
 void ThreadedSolver<D>::tell_of_all(StepEnd& end, const SumAndMost& excess) {
     struct Told {
@@ -108,7 +108,7 @@ void ThreadedSolver<D>::tell_of_all(StepEnd& end, const SumAndMost& excess) {
     end.compression = compression_of(all, migration_.total());
 }
 
-/// As fast as any on any rank.
+/// Maximum over the ranks.
 template <int D>
 real ThreadedSolver<D>::speed() const {
     if (!fluid_.shared) return HostSolver<D>::speed();

@@ -1,5 +1,5 @@
-// A particle solver on threads and vector lanes: the sorted particles of a step with their neighbours (pairs.hpp), what solids add there,
-// and the effects that every method has (flow.hpp).
+// A particle solver on threads and SIMD lanes: the sorted particles of a step with their neighbours (pairs.hpp), the terms of solids, and
+// the effects of every method (flow.hpp).
 #pragma once
 #include "core/effects.hpp"
 #include "particles/flow.hpp"
@@ -23,46 +23,46 @@ protected:
     ThreadedSolver(const Scheme& scheme, const scene::Scene& scene, Fluid<D>&& start);
     Pairs::NeighbourCounts neighbour_counts() const final { return pairs_.neighbour_counts(); }
     real max_dt() const final { return effects_.max_dt(flow_); }
-    /// That the method's own arrays take.
+    /// Bytes of the method's own arrays.
     virtual std::size_t own_bytes() const = 0;
-    /// Emitters, sinks and the hand, before a step.
+    /// Emitters, sinks and interactive forcing, before a step.
     void pour_and_drain(real dt) {
         this->forget_whole();
         this->emitters_.apply(fluid_, dt);
         if (sources_) sources_->pour_and_drain(fluid_);
-        clamps_before_ = fluid_.clamps;  // emitters are everybody's
+        clamps_before_ = fluid_.clamps;  // emitters are replicated on all ranks
     }
-    /// The pairs of particles at these places, closer than the radius [m]. Over ranks particles change hands, and from here to dismiss()
-    /// the state also has those that others show, of which the places and these arrays of the state are known.
+    /// Finds the pairs at these positions, closer than the radius [m]. In parallel particles migrate first, and until dismiss() the state
+    /// also contains ghost particles, for which the positions and these arrays of the state are valid.
     void find_pairs(std::array<std::vector<real>, D>& at, real radius, std::initializer_list<std::vector<real>*> read);
     void dismiss();
-    /// Particles of the state that are this rank's.
+    /// Number of state particles that this rank owns.
     int own() const { return fluid_.shared ? migration_.own() : fluid_.count(); }
-    /// Counts a step; the state follows the sorted order now and then; what has crossed a side is taken back or out. excess: of own
-    /// particles; acceleration: the largest of them. Gives the speed before sides were crossed, and the others as they are of all.
+    /// Ends a step: counts it, reorders the state at intervals, wraps or removes particles beyond sides. excess: of own particles;
+    /// acceleration: their maximum. Returns the maximum speed before sides were crossed, and global values of the others.
     struct StepEnd {
         real speed, acceleration;
         Compression compression;
     };
     StepEnd end_step(const SumAndMost& excess, real acceleration);
-    /// Over ranks, what walls corrected on all of them.
+    /// In parallel, sums the boundary corrections over the ranks.
     void sum_up_clamps();
     real speed() const final;
-    /// Where the passes of the step were: their positions are the pairs'.
+    /// Conduction at the positions of the step's passes, which are those of the pairs.
     void conduct(real dt) final;
-    /// Whether heat can be found in one pass with the densities of these places: nothing changes it before conduct().
+    /// Returns whether heat can be computed in one pass with the densities at these positions: no term changes it before conduct().
     bool conducts_alone() const {
         const Heat<D>* heat = this->heat_.get();
         return heat && !sources_ && heat->heaters().empty() && heat->fluxes().empty() && heat->exchanges().empty();
     }
-    /// That pass, for a method's own of densities: conduct() goes on from there.
+    /// That pass, for a density pass of the method; conduct() continues from its result.
     void find_density_and_heat(const PbfPass& density);
-    /// After the pairs are found: what density particles are to have, where the scene lets them boil.
+    /// After the neighbour search: the rest densities of particles that may boil.
     void expand();
-    /// Of sorted particles, over the liquid's; null: nothing boils, and no ice moves.
+    /// Of sorted particles, relative to the liquid's; nullptr: no boiling and no moving ice.
     const float* rest() const { return this->ice_ || (this->vapour() && this->vapour()->boils()) ? rest_.data() : nullptr; }
     using HostSolver<D>::fluid_;
-    single::PbfParams kernels_{};  // the method's, as PBF, XSPH and vorticity read them
+    single::PbfParams kernels_{};  // the method's, for PBF, XSPH and vorticity
     single::WallParams walls_;
     Pairs pairs_;
     SolidTerms<D> solids_;
@@ -74,7 +74,7 @@ private:
     void load_theta();
     HeatPass heat_pass();
 
-    bool warmed_ = false;                   // the first rates of the step are there
+    bool warmed_ = false;                   // the first rates of the step are available
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
     std::vector<float> rest_;
     void tell_of_all(StepEnd& end, const SumAndMost& excess);
@@ -84,7 +84,7 @@ private:
     HandOver::Arrays arrays_;
     Clamps clamps_before_;
     typename Fluid<D>::Quantity broken_{};
-    mutable real fastest_ = not_applicable;  // over ranks: of all particles as they are now; not known after a restart [m/s]
+    mutable real fastest_ = not_applicable;  // in parallel: over all particles now; unknown after a restart [m/s]
 };
 
 }  // namespace weir::particles

@@ -10,7 +10,7 @@ namespace weir::particles {
 
 namespace {
 
-/// Planes of the grid, one particle thick, in which there is liquid as the scene begins.
+/// Planes of the grid, one particle thick, with liquid at the start.
 template <int D>
 int wet_planes(const scene::Scene& scene) {
     constexpr int looks = 64;
@@ -43,7 +43,7 @@ void tally_migration(const SharedParticles& particles, const RankOf& of, int num
 }
 
 void tally_end(const RankOf& of, Tally& tally) {
-    constexpr std::size_t told = 80;  // compression's sum and largest, corrections of walls, speed, pace, acceleration, and what is broken
+    constexpr std::size_t told = 80;  // compression's sum and maximum, boundary corrections, speed, pace, acceleration, failed quantity
     tally.everywhere(told, 1, told * static_cast<std::size_t>(of.ranks));
 }
 

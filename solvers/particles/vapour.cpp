@@ -13,7 +13,7 @@ using scene::Type;
 
 namespace {
 
-constexpr int spacings_across = 4;  // of a column: so many that the noise of one row is a quarter of a spacing
+constexpr int spacings_across = 4;  // width of a column: the noise of one row is then a quarter of a spacing
 
 template <int D>
 Vec<3> place_of(const Vec<D>& at) {
@@ -101,7 +101,7 @@ void Vapour<D>::set_columns(const scene::Scene& scene, const Domain<D>& domain) 
     deepest_ = domain.hi[axis] - domain.lo[axis];
 }
 
-/// By the line of saturation; latent heat and heat capacities stay those of the lowest pressure.
+/// By the saturation line; latent heat and heat capacities stay those at the lowest pressure.
 template <int D>
 void Vapour<D>::set_shifts(real pressure) {
     const real boils = substance_->temperature(thermo::Boundary::saturation, ambient_.lowest_pressure());

@@ -1,8 +1,8 @@
-// Boiling and condensation of particles: one whose enthalpy is beyond the liquid's end at the pressure of its place takes the latent heat
-// up in becoming vapour, and expands to the vapour's density; cooled, it goes back the same way. Enthalpy is all that is kept: shares,
-// densities and temperatures follow from it and from the place (kernels/heat_state.inl, kernels/vapour.inl).
+// Boiling and condensation of particles. A particle whose enthalpy exceeds the liquid's end at its local pressure absorbs the latent heat
+// while becoming vapour, and expands to the vapour's density; on cooling the process reverses. Enthalpy is the only variable: fractions,
+// densities and temperatures follow from it and from the position (kernels/heat_state.inl, kernels/vapour.inl).
 //     p = p(t) + rho0 g d,   d: liquid volume above the particle over area, in its column of four spacings across
-// which is the weight above it, whether of liquid or vapour, and the depth below the surface of a liquid at rest.
+// that is the weight above it, of liquid or vapour, and the depth below the surface for a liquid at rest.
 #pragma once
 #include "matter/ambient.hpp"
 #include "particles/fluid.hpp"
@@ -31,25 +31,25 @@ scene::Key vapour_key();
 template <int D>
 class Vapour {
 public:
-    /// states: of the substance at the lowest pressure that the scene tells of.
+    /// states: of the substance at the lowest pressure of the scene.
     Vapour(const scene::Scene& scene, const Domain<D>& domain, thermo::SubstancePtr substance, const HeatStates& states);
 
-    /// How deep every particle is, and what density it is to have; false: all are liquid at any depth, and nothing needs to know.
+    /// Finds the depths of all particles and their rest densities; false: all are liquid at any depth.
     bool find(const Fluid<D>& fluid, const HeatStates& states);
-    /// Of particle i, as found: how much more enthalpy boiling takes than at no depth [J/kg]; its density over the liquid's.
+    /// For particle i, as found: increase of the boiling enthalpy relative to zero depth [J/kg]; density relative to the liquid's.
     real shift(int i) const { return !boils_ ? 0 : shift_[static_cast<std::size_t>(i)]; }
     real rest(int i) const { return !boils_ ? 1 : rest_[static_cast<std::size_t>(i)]; }
 
     bool boils() const { return boils_; }
 
     const VapourParams& params() const { return params_; }
-    /// To the pressure of that moment; whether it changes in the course of time.
+    /// Sets the pressure of time t; returns whether it varies with time.
     bool set_time(real t);
-    /// The largest of all depths and times [J/kg].
+    /// Maximum over all depths and times [J/kg].
     real highest_shift() const { return highest_shift_; }
     int columns() const;
     int rows() const { return params_.cells[params_.axis]; }
-    /// That the vapour's density is not the physical one, where that is so.
+    /// A warning where the vapour's density is not the physical one.
     const std::string& concern() const { return concern_; }
     std::size_t bytes() const {
         return (shift_.capacity() + rest_.capacity()) * sizeof(real) + (above_.capacity() + entry_.capacity()) * sizeof(int);
@@ -67,8 +67,8 @@ private:
     real highest_shift_ = 0;
     std::string concern_;
     std::vector<real> shift_, rest_;
-    std::vector<int> above_;  // particles above each row of each column
-    std::vector<int> entry_;  // of each particle in it
+    std::vector<int> above_;  // number of particles above each row of each column
+    std::vector<int> entry_;  // index of each particle in it
     bool boils_ = false;
 };
 

@@ -1,6 +1,6 @@
-// Walls as the kernels see them: the part of a kernel that lies behind a plane, as a function of the distance alone. It replaces sampled
-// boundary particles (Akinci et al. 2012) for planes, and follows density maps (Koschier & Bender 2017) for shapes: exact for a plane, no
-// bumps that particles catch on, no particles to sort or to visit. It enters the density and the gradient.
+// Walls in kernel sums: the part of a kernel behind a plane, as a function of the distance alone. It replaces sampled boundary particles
+// (Akinci et al. 2012) for planes, and follows density maps (Koschier & Bender 2017) for shapes. It is exact for a plane and smooth, and
+// needs no particles to sort or visit. It enters the density and the gradient.
 #pragma once
 #include "particles/kernels.hpp"
 

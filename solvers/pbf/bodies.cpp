@@ -32,7 +32,7 @@ void carry(BodiesInLiquid<D>& bodies, Domain<D>& domain, const Multipliers& all,
         const real sum = all.sum ? static_cast<real>(all.sum[m.particle]) : lambda;
         const float excess = all.density ? all.density[m.particle] - (all.rest ? all.rest[m.particle] : 1.0f) : 0.0f;
         m.given = lambda / dt * m.pull;
-        m.stiff = sum < 0 ? stiffness(lambda, static_cast<real>(excess), give) : 0;  // a liquid is pushed, never pulled
+        m.stiff = sum < 0 ? stiffness(lambda, static_cast<real>(excess), give) : 0;  // pressure pushes but does not pull
     }
     bodies.exchange(domain, dt, false);
     for (const auto& m : meetings) {

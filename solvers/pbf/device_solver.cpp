@@ -42,7 +42,7 @@ DevicePbfSolver<D>::DevicePbfSolver(const Options& options, const particles::Flu
     this->settle();
 }
 
-/// Numbers at the right are the lines of Algorithm 1.
+/// The numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport DevicePbfSolver<D>::step(real dt) {
     fluid_.let_in(dt);
@@ -66,10 +66,10 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     last_dt_ = dt;
     fluid_.finish(dt);  // 22
     fluid_.hold_again();
-    this->conduct(dt);  // only where a substance is named
+    this->conduct(dt);  // only where the scene names a substance
     const real speed = this->find_speed();
     const Reduced c = find_compression();
-    const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
+    const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // over all particles of the step, including those that leave now
     fluid_.end_step();
     fluid_.record(passes_);
     return this->report(dt, speed, iterations, {mean, c.largest});
@@ -89,7 +89,7 @@ void DevicePbfSolver<D>::iterate_afresh() {
     correct();
 }
 
-/// Starts from the multipliers of the step before: see PbfSolver.
+/// Warm start from the multipliers of the previous step: see PbfSolver.
 template <int D>
 void DevicePbfSolver<D>::warm_start(real dt) {
     if (options_.warm_start == 0) return;
@@ -107,7 +107,7 @@ void DevicePbfSolver<D>::find_lambdas() {
                           multiplier_});
 }
 
-/// x* += Δp, eq. 12 and 14, the walls of the domain, and its solids.
+/// x* += Δp, eq. 12 and 14, with the walls of the domain and its solids.
 template <int D>
 void DevicePbfSolver<D>::correct() {
     const auto& f = fluid_;
@@ -166,7 +166,7 @@ void DevicePbfSolver<D>::push_bodies() {
     fluid_.renew_terms();
 }
 
-/// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone.
+/// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 only positions.
 template <int D>
 void DevicePbfSolver<D>::update(real dt, real slow) {
     const auto& f = fluid_;

@@ -29,12 +29,12 @@ private:
     void carry_bodies(bool iterates);
     void push_bodies();
     void update(real dt, real slow) override;
-    /// On the device, of the sorted particles; and on the host, of the state.
+    /// On the device from the sorted particles; on the host from the state.
     Reduced find_compression();
     real worst_compression() override { return find_compression().largest; }
     Compression compression() const override;
 
-    real give_ = 0, carried_dt_ = 0;  // where there are bodies, with what they read on the host: see PbfSolver
+    real give_ = 0, carried_dt_ = 0;  // with bodies, and their data on the host: see PbfSolver
     std::array<std::vector<real>, D> predicted_;
     std::vector<float> four_, multipliers_, densities_, rests_;
     Memory density_, multiplier_;  // of sorted particles: rho / rho0; sum of lambda over this step, with warm start

@@ -1,4 +1,4 @@
-// The registration of "pbf": its keys, its effects, its maker.
+// The registration of "pbf": its keys, effects and factory.
 #include "particles/kind.hpp"
 #include "particles/traffic.hpp"
 #include "pbf/device_solver.hpp"
@@ -82,7 +82,7 @@ std::vector<scene::Variant> effects() {
          {"k"}}};
 }
 
-/// Of a step over ranks: those near the cuts, and the multipliers and positions that neighbours read in each iteration.
+/// Messages of a step in parallel: ghost particles, and their multipliers and positions in each iteration.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
     const Options options(scene);
     const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);

@@ -1,5 +1,5 @@
-// What Position Based Fluids is on every backend: its options, the step that it advises and the one it stands, the first state that it
-// settles into, what it adds to integrals and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
+// The part of Position Based Fluids common to all backends: options, advised and stable steps, relaxation of the initial state, additions
+// to integrals and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
 #pragma once
 #include "particles/solver.hpp"
 #include "particles/squeezed.hpp"
@@ -12,8 +12,8 @@ namespace weir::pbf {
 
 using particles::Compression;
 
-/// Of the iterations that settle the first state: after so many a particle may have got new neighbours, and a compression of the densest
-/// particle of a tenth of what a step leaves is good enough.
+/// Relaxation of the initial state: iterations between neighbour searches. It ends when the compression of the densest particle is a tenth
+/// of what a step leaves.
 inline constexpr int settle_between_lists = 5;
 inline constexpr real settle_good_enough = 1e-3;
 
@@ -50,13 +50,13 @@ protected:
     }
     void settle();
 
-    // What a backend's step has of its own.
+    // implemented by the backend's step
     virtual Compression compression() const = 0;
-    /// Of the densest particle.
+    /// Compression of the densest particle.
     virtual real worst_compression() { return compression().worst; }
     /// x* = x, and the pairs there.
     virtual void stay() = 0;
-    /// One iteration that starts from no multipliers.
+    /// One iteration with zero initial multipliers.
     virtual void iterate_afresh() = 0;
     virtual void update(real dt, real slow) = 0;
 
@@ -65,8 +65,8 @@ protected:
     real last_dt_ = 0;      // [s]
 };
 
-/// Takes the density error of the initial lattice (a few per cent where it meets a wall) out of the positions alone: left to the first step
-/// it would become speed, error / dt, the more the better that step is solved. Stabilisation of Macklin et al. 2014, section 4.4.
+/// Removes the density error of the initial lattice (a few per cent at walls) by moving positions only. In the first step it would become
+/// velocity, error / dt, the larger the better that step is solved. Stabilisation of Macklin et al. 2014, section 4.4.
 template <class Backend>
 void Pbf<Backend>::settle() {
     for (int i = 0; i < options_.settle; ++i) {

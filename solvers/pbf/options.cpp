@@ -26,8 +26,8 @@ Options::Options(const scene::Scene& scene) {
     if (particles::vapour_is_named(scene)) check_vapour(scene);
 }
 
-/// How far apart, in spacings, particles of a lattice may be that is seen at its own density, but for a tenth: farther apart, one particle
-/// by itself is denser than all are to be, and no place satisfies its constraint.
+/// Largest lattice spacing, in particle spacings, at which a particle's density is within a tenth of the lattice's. At larger ones a single
+/// particle exceeds the rest density, and no position satisfies its constraint.
 template <int D>
 real farthest_lattice(const particles::Scheme& scheme) {
     const particles::Kernel<D> w = particles::density_kernel<D>(scheme, 1);

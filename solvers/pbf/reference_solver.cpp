@@ -40,7 +40,7 @@ ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start
     this->settle();
 }
 
-/// Numbers at the right are the lines of Algorithm 1.
+/// The numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport ReferencePbfSolver<D>::step(real dt) {
     emitters_.apply(fluid_, dt);
@@ -60,7 +60,7 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) bodies_->end(fluid_.domain, dt, slow), carried_dt_ = 0;
     this->hold_again();
-    this->conduct(dt);  // only where a substance is named
+    this->conduct(dt);  // only where the scene names a substance
     last_dt_ = dt;
     const real speed = speed_ = this->speed();
     const Compression c = compression();
@@ -83,7 +83,7 @@ void ReferencePbfSolver<D>::predict(real dt) {
         fluid_.time += dt;
         fluid_.domain.solids.set_time(fluid_.time);
         for (int i = 0; i < fluid_.count(); ++i) Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * fluid_.gravity);
-        this->hold();  // what is frozen
+        this->hold();  // frozen particles
         predicted_.clear(), x_star_.clear();
         for (int i = 0; i < fluid_.count(); ++i)
             predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
@@ -99,7 +99,7 @@ void ReferencePbfSolver<D>::predict(real dt) {
     this->expand();
 }
 
-/// Starts from the multipliers of the step before: see PbfSolver.
+/// Warm start from the multipliers of the previous step: see PbfSolver.
 template <int D>
 void ReferencePbfSolver<D>::warm_start(real dt) {
     if (options_.warm_start == 0) return;
@@ -121,7 +121,7 @@ void ReferencePbfSolver<D>::find_lambdas() {
     lambda_ = reference_.lambdas(x_star_, options_.warm_start > 0 ? &multiplier_ : nullptr);
 }
 
-/// x* += Δp, eq. 12 and 14, and out of walls and solids.
+/// x* += Δp, eq. 12 and 14; moves particles out of walls and solids.
 template <int D>
 void ReferencePbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
@@ -139,14 +139,14 @@ void ReferencePbfSolver<D>::correct() {
     this->ice_->each_place([&](int i, const Vec<D>& to) { x_star_[static_cast<std::size_t>(i)] = particles::point_of(to - centre); });
 }
 
-/// Bodies fall by their weight, and go where their velocities take them.
+/// Applies gravity to bodies and moves them with their velocities.
 template <int D>
 void ReferencePbfSolver<D>::start_bodies(real dt) {
     carried_dt_ = dt;
     bodies_->fall(fluid_.domain, fluid_.time, dt);
 }
 
-/// Particles whose prediction would be inside a body push it.
+/// Particles whose predicted position is inside a body push it.
 template <int D>
 void ReferencePbfSolver<D>::push_bodies_ahead() {
     auto& meetings = bodies_->meetings();
@@ -159,7 +159,7 @@ void ReferencePbfSolver<D>::push_bodies_ahead() {
     for (const auto& m : meetings) predicted_[static_cast<std::size_t>(m.particle)] += dt * bodies_->back(m);
 }
 
-/// As far as the multipliers push bodies in this iteration: see PbfSolver.
+/// Moves bodies by the multipliers of this iteration: see PbfSolver.
 template <int D>
 void ReferencePbfSolver<D>::carry_bodies(bool iterates) {
     auto& meetings = bodies_->meetings();
@@ -179,7 +179,7 @@ void ReferencePbfSolver<D>::carry_bodies(bool iterates) {
     }
 }
 
-/// Bodies to where they go, and particles out of them and of solids.
+/// Moves bodies, and particles out of them and out of solids.
 template <int D>
 void ReferencePbfSolver<D>::push_bodies() {
     auto& meetings = bodies_->meetings();
@@ -201,7 +201,7 @@ void ReferencePbfSolver<D>::push_bodies() {
     }
 }
 
-/// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 positions alone. slow: see PbfSolver.
+/// v = (x* - x) / dt, x = x*, and the density there; with dt = 0 only positions. slow: see PbfSolver.
 template <int D>
 void ReferencePbfSolver<D>::update(real dt, real slow) {
     const auto timed = passes_.time("update");

@@ -1,5 +1,5 @@
-// Position Based Fluids (Macklin & Müller 2013, Algorithm 1) in plain double precision over all pairs on one thread: the step of PbfSolver,
-// as simply as it can be written, with which every backend is compared. Its passes allocate what they return.
+// Position Based Fluids (Macklin & Müller 2013, Algorithm 1) in plain double precision over all pairs on one thread: the step of PbfSolver
+// in its simplest form, the reference for every backend. Its passes allocate their results.
 #pragma once
 #include "particles/reference_solver.hpp"
 #include "pbf/method.hpp"
@@ -35,8 +35,8 @@ private:
     void conduct(real dt) override { this->conduct_at(x_star_, dt); }
     std::size_t own_bytes() const override;
 
-    real give_ = 0;        // of walls that give way [m^2]
-    real carried_dt_ = 0;  // length of the step where bodies move in it, else 0 [s]
+    real give_ = 0;        // response to the motion of walls [m^2]
+    real carried_dt_ = 0;  // length of the step where bodies move in it, otherwise 0 [s]
     std::vector<Vec<D>> predicted_;
     std::vector<particles::Point> x_star_;
     std::vector<double> density_, lambda_, multiplier_;  // rho / rho0; of one iteration; of all in this step, with warm start

@@ -19,12 +19,12 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene) : Base(Options(scene), scene,
     this->settle();
 }
 
-/// Numbers at the right are the lines of Algorithm 1.
+/// The numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     this->pour_and_drain(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
-    this->hold();  // what is frozen
+    this->hold();  // frozen particles
     if (bodies_) start_bodies(dt);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
@@ -44,7 +44,7 @@ StepReport PbfSolver<D>::step(real dt) {
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
     this->dismiss();
     this->hold_again();
-    this->conduct(dt);  // only where a substance is named
+    this->conduct(dt);  // only where the scene names a substance
     last_dt_ = dt;
     const auto end = this->end_step(excess(), 0);
     speed_ = end.speed;
@@ -114,8 +114,8 @@ PbfPass PbfSolver<D>::pass(const float* from, float* to, const float* solid) {
     return a;
 }
 
-/// Starts from the multipliers of the step before (they stand for a pressure, so they go with dt^2): the weight of the liquid above needs
-/// many iterations to be felt at the bottom, and hardly changes from step to step.
+/// Warm start from the multipliers of the previous step (scaled by dt^2, since they represent a pressure): the weight of the liquid above
+/// needs many iterations to reach the bottom, and hardly changes between steps.
 template <int D>
 void PbfSolver<D>::warm_start(real dt) {
     if (options_.warm_start == 0) return;
@@ -155,14 +155,14 @@ void PbfSolver<D>::find_lambdas() {
     pairs_.refresh(pairs_.b(), true);
 }
 
-/// x* += Δp, eq. 12 and 14, and the walls of the domain.
+/// x* += Δp, eq. 12 and 14, with the walls of the domain.
 template <int D>
 void PbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const auto run = options_.pressure_k > 0 ? table.correct_with_pressure : table.correct;
     particles::ClampTally tally{.least2 = static_cast<float>(std::pow(particles::least_clamp * fluid_.domain.spacing, 2))};
-    PbfPass job = pass(pairs_.b(), pairs_.a(), solids_.there());  // b is where a was
+    PbfPass job = pass(pairs_.b(), pairs_.a(), solids_.there());  // b has the values of a
     job.clamps = &tally;
     job.order = pairs_.cells().order().data();
     job.particles = pairs_.particles();
@@ -171,7 +171,7 @@ void PbfSolver<D>::correct() {
     if (tally.count > 0) fluid_.clamps.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
 }
 
-/// What is frozen stays where the list found it, or moves with its piece.
+/// Frozen particles keep their position of the neighbour search, or move with their piece.
 template <int D>
 void PbfSolver<D>::hold_places() {
     if (!this->heat_ || this->heat_->frozen() == 0) return;
@@ -202,7 +202,7 @@ void PbfSolver<D>::collide() {
     pairs_.refresh(pairs_.a(), true);
 }
 
-/// Bodies fall by their weight, and go where their velocities take them.
+/// Applies gravity to bodies and moves them with their velocities.
 template <int D>
 void PbfSolver<D>::start_bodies(real dt) {
     const auto timed = passes_.time("bodies");
@@ -224,7 +224,7 @@ void PbfSolver<D>::carry_bodies(const float* density) {
           carried_dt_);
 }
 
-/// Bodies to where they go, and particles out of them, which pushes them on.
+/// Moves bodies, and particles out of them; these particles push the bodies.
 template <int D>
 void PbfSolver<D>::push_bodies() {
     const auto timed = passes_.time("bodies");
@@ -242,10 +242,10 @@ void PbfSolver<D>::end_bodies(real dt, real slow) {
     carried_dt_ = 0;
 }
 
-/// v = (x* - x) / dt, x = x*; with dt = 0 only the latter. The move that the iterations made in single precision is added to the prediction
-/// in double precision, so that rounding does not depend on how far a particle is from the origin.
-/// slow: the longer of this step and the last. What the last one left of compression goes with its dt^2; corrected in a step that is
-/// shorter, to meet a frame, it must not become speed over that.
+/// v = (x* - x) / dt, x = x*; with dt = 0 only the latter. The displacement by the iterations, in single precision, is added to the
+/// double-precision prediction, so that rounding does not depend on the distance from the origin. slow: the longer of this step and the
+/// last, by which that displacement is divided. The compression left by the last step is proportional to its dt^2; a shorter step, for a
+/// frame, must not convert it to velocity over its own dt.
 template <int D>
 void PbfSolver<D>::update(real dt, real slow) {
     const auto timed = passes_.time("update");
@@ -270,11 +270,11 @@ void PbfSolver<D>::update(real dt, real slow) {
     });
     if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
     if (dt > 0) return;
-    this->dismiss();  // nothing comes after it
+    this->dismiss();  // the last use of ghost particles
     this->sum_up_clamps();
 }
 
-/// Of own particles.
+/// Over this rank's own particles.
 template <int D>
 particles::SumAndMost PbfSolver<D>::excess() const {
     const float* rest = this->rest();

@@ -1,4 +1,4 @@
-// Position Based Fluids (Macklin & Müller 2013, Algorithm 1) in two and three dimensions, on threads and vector lanes.
+// Position Based Fluids (Macklin & Müller 2013, Algorithm 1) in two and three dimensions, on threads and SIMD lanes.
 #pragma once
 #include "particles/threaded_solver.hpp"
 #include "pbf/method.hpp"
@@ -43,10 +43,10 @@ private:
 
     std::array<std::vector<real>, D> x_star_;
     std::vector<float> density_;      // rho / rho0 of each sorted particle
-    std::vector<int> sorted_;         // where each particle of the state stands, where ice moves
-    std::vector<float> before_push_;  // places of particles near solids, before they are put out of them
-    real give_ = 0;                   // of walls that give way [m^2]
-    real carried_dt_ = 0;             // length of the step where bodies move in it, else 0 [s]
+    std::vector<int> sorted_;         // sorted index of each state particle, with moving ice
+    std::vector<float> before_push_;  // positions of particles near solids, before they are moved out
+    real give_ = 0;                   // response to the motion of walls [m^2]
+    real carried_dt_ = 0;             // length of the step where bodies move in it, otherwise 0 [s]
     std::vector<float> multiplier_;   // sum of lambda of each sorted particle over this step, with warm start
 };
 

@@ -68,17 +68,17 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     if (bodies_) meet_bodies(dt);                // and on bodies
     kick(dt);
     if (bodies_) carry_bodies(dt);
-    fluid_.hold();                                   // what is frozen
+    fluid_.hold();                                   // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back();  // of what pushed
+    if (bodies_) give_back();  // by particles inside bodies
     fluid_.finish(dt);         // XSPH, vorticity
     fluid_.hold_again();
-    this->conduct(dt);  // only where a substance is named
+    this->conduct(dt);  // only where the scene names a substance
     const real speed = this->find_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.order, fluid_.rests, fluid_.density, fluid_.parts()});
-    const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // of all that were there, also those that leave now
+    const real mean = fluid_.count() ? c.sum / fluid_.count() : 0;  // over all particles of the step, including those that leave now
     fluid_.end_step();
     fluid_.record(passes_);
     return this->report(dt, speed, {mean, c.largest});
@@ -111,7 +111,7 @@ void DeviceSphSolver<D>::find_forces() {
                                       f.terms, f.order, f.v, acceleration_});
 }
 
-/// What particles feel of bodies, and what the passes leave out of it: see SphSolver.
+/// Forces of bodies on particles, including terms that the passes omit: see SphSolver.
 template <int D>
 void DeviceSphSolver<D>::meet_bodies(real dt) {
     const auto timed = passes_.time("bodies");
@@ -161,7 +161,7 @@ void DeviceSphSolver<D>::kick(real dt) {
     fluid_.run("kick", {f.count(), f.stride(), f.state_params, dt, f.pull(dt), f.order, f.x, acceleration_, f.v});
 }
 
-/// d rho / dt = rate, as SphSolver does.
+/// d rho / dt = rate, as in SphSolver.
 template <int D>
 void DeviceSphSolver<D>::advance_densities(real dt) {
     const auto& f = fluid_;

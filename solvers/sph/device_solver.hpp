@@ -31,11 +31,11 @@ private:
     void drift(real dt);
 
     Memory params_, velocities_, acceleration_, normals_;  // the latter of sorted particles: float4
-    particles::plain::SphParams exact_;                    // as bodies read them
-    std::vector<float> accelerations_;                     // and what else they read on the host: see SphSolver
+    particles::plain::SphParams exact_;                    // for bodies
+    std::vector<float> accelerations_;                     // and other data for bodies on the host: see SphSolver
     std::vector<int> beside_bodies_;
     std::vector<real> rise_;
-    bool sticky_solids_ = false;  // whether the liquid sticks to any
+    bool sticky_solids_ = false;  // whether any solid is no-slip
 };
 
 }  // namespace weir::sph

@@ -1,4 +1,4 @@
-// The registration of "sph": its keys, its effects, its maker.
+// The registration of "sph": its keys, effects and factory.
 #include "particles/kind.hpp"
 #include "particles/traffic.hpp"
 #include "sph/device_solver.hpp"
@@ -93,7 +93,7 @@ Key surface() {
             .length = -1};
 }
 
-/// Of a step over ranks: those near the cuts, and their new velocities or their summed densities.
+/// Messages of a step in parallel: ghost particles, and their new velocities or summed densities.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
     const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);
     const auto dim = static_cast<std::size_t>(scene.dim());

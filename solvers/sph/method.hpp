@@ -1,5 +1,5 @@
-// What smoothed particle hydrodynamics is on every backend: its options, the rest density and the pressure that it starts from, the steps
-// that it advises and stands, what it adds to fields and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
+// The part of smoothed particle hydrodynamics common to all backends: options, rest density and initial pressure, advised and stable steps,
+// additions to fields and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
 #pragma once
 #include "particles/solver.hpp"
 #include "particles/squeezed.hpp"
@@ -31,14 +31,14 @@ protected:
           options_(options),
           rest_density_(this->setting().rho0),
           rho_rest_(this->setting().rho0) {}
-    /// What a scene says beyond the options.
+    /// Settings of the scene besides the options.
     void start_from(const scene::Scene& scene, particles::Fluid<Backend::dim>& fluid) {
         rest_density_ = RestDensity(scene, fluid.rho0);
         max_dt_ = scene.root().number_or("time.max_dt", infinity);
         hint_ = start_pressure(scene, options_, fluid);
     }
 
-    /// Of particle i [kg/m^3].
+    /// Rest density of particle i [kg/m^3].
     real rest_of(int i) const {
         if (this->vapour()) return rho_rest_ * this->vapour()->rest(i);
         const auto& heat = this->heat_;
@@ -63,7 +63,7 @@ protected:
     void save_more(Checkpoint& to) const final { to.put_value("sph.max_acceleration", max_acceleration_); }
     void restore_more(const Checkpoint& from) final { max_acceleration_ = from.get_value<real>("sph.max_acceleration"); }
 
-    /// After the drift of particles: pieces of ice go as bodies do.
+    /// After the drift of particles: moves pieces of ice as bodies.
     void carry_ice(real dt) {
         if (!this->ice_moves()) return;
         this->ice_->fly(dt);
@@ -81,7 +81,7 @@ protected:
     RestDensity rest_density_;
     real rho_rest_ = 1;  // now [kg/m^3]
     real max_acceleration_ = 0, max_dt_ = infinity;
-    std::string hint_;  // about the start
+    std::string hint_;  // about the initial state
 };
 
 }  // namespace weir::sph

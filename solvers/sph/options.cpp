@@ -28,7 +28,7 @@ Options::Options(const scene::Scene& scene, real fastest) : Options() {
     tension = scene.flag("scheme.tension");
     const std::string& by = scene.text("scheme.density");
     continuity = by != "summation";
-    // A density that is summed counts all that stands behind two walls which a particle has no room between, and throws the one that can
+    // density by summation counts both parts behind two walls that are closer than a particle, and ejects one that can move
     // move.
     facing = continuity;
     if (by == "delta") diffusion = delta_sph.diffusion, artificial = delta_sph.viscosity;
@@ -75,7 +75,7 @@ real Options::elastic_energy(real rho, real rho0) const {
     return c2 / gamma * ((std::pow(r, gamma - 1) - 1) / (gamma - 1) + 1 / r - 1);
 }
 
-/// What gravity and walls do to the parameters.
+/// Sets the parameters of gravity and walls.
 template <class Params>
 void add_surroundings(Params& p, const Options& o, real spacing, real rho0) {
     using Number = decltype(Params::h);
@@ -87,20 +87,20 @@ void add_surroundings(Params& p, const Options& o, real spacing, real rho0) {
         g = std::hypot(g, o.gravity[a]);
     }
     p.per_depth = to_number(g > 0 ? 1 / (rho0 * g * spacing) : 0);
-    p.closest = to_number(0.25 * spacing);  // half of where particles of a lattice stand
+    p.closest = to_number(0.25 * spacing);  // half the distance of lattice particles from a wall
     std::transform(o.stick.begin(), o.stick.end(), p.stick, to_number);
     std::transform(o.slide.begin(), o.slide.end(), p.slide, to_number);
 }
 
-/// Factor of the slope h^4 - r^4 of the surface's stress: its second moment along an axis is 1.
+/// Factor of the slope h^4 - r^4 of the surface stress: its second moment along an axis becomes 1.
 template <int D>
 real stress_scale(real h) {
     return (D == 2 ? 8 / pi : 135 / (16 * pi)) / (std::pow(h, D + 2) * std::pow(h, 4));
 }
 
-/// What particles below a flat surface see of a unit stress whose layer is the gradient of the colour: the integral over the depth z of
-/// that gradient, the kernel's integral over a plane at z, times the second moment along the surface of the stress's slope where there
-/// is liquid. Without the cut of the slope it would be 1/2.
+/// Response of particles below a flat surface to a unit stress in a layer given by the colour gradient. It is the integral over the depth z
+/// of that gradient (the kernel's integral over a plane at z) times the second moment of the stress's slope along the surface, over the
+/// liquid only. Without the cut by the surface it would be 1/2.
 template <int D>
 real seen_stress(const Kernel<D>& kernel) {
     constexpr int pieces = 200;
@@ -119,7 +119,7 @@ real seen_stress(const Kernel<D>& kernel) {
     return seen;
 }
 
-/// The colour's gradient is some 1.5 / h at a surface; inside a liquid in disorder it is less than this over h.
+/// The colour gradient is some 1.5 / h at a surface; disorder inside a liquid stays below this value over h.
 constexpr real colour_noise = 0.05;
 
 template <class Params, int D>

@@ -53,13 +53,13 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     find_neighbours();
     find_densities();                                // eq. 3 and 12
     kick(dt);                                        // eq. 10 and 14
-    this->hold();                                    // what is frozen
+    this->hold();                                    // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) sph::move_bodies(*bodies_, fluid_, beside_bodies_, dt);
     drift(fluid_, dt);
-    if (bodies_) give_back(*bodies_, fluid_);  // of what pushed
+    if (bodies_) give_back(*bodies_, fluid_);  // by particles inside bodies
     this->carry_ice(dt);
-    this->conduct(dt);  // only where a substance is named
+    this->conduct(dt);  // only where the scene names a substance
     const real speed = speed_ = this->speed();
     real sum = 0, worst = 0;
     for (int i = 0; i < fluid_.count(); ++i) {
@@ -90,7 +90,7 @@ void ReferenceSphSolver<D>::find_neighbours() {
     reference_.p.wall_rho = std::min(rho_rest_, fluid_.rho0);
 }
 
-/// And pressures.
+/// Also computes pressures.
 template <int D>
 void ReferenceSphSolver<D>::find_densities() {
     const auto timed = passes_.time("density");
@@ -119,7 +119,7 @@ typename ReferenceSphSolver<D>::Points ReferenceSphSolver<D>::accelerations() {
     return a;
 }
 
-/// Of solids that are stuck to: 2 nu plane / phi along the surface (Morris et al. 1997, sec. 3.2).
+/// Drag of no-slip solids: 2 nu plane / phi along the surface (Morris et al. 1997, sec. 3.2).
 template <int D>
 void ReferenceSphSolver<D>::add_drag_of_solids(Points& to) const {
     const auto& solids = fluid_.domain.solids;
@@ -146,7 +146,7 @@ void ReferenceSphSolver<D>::kick(real dt) {
     give_back(*bodies_, fluid_);
 }
 
-/// What particles feel of bodies, and what accelerations leave out of it.
+/// Forces of bodies on particles, including terms that the accelerations omit.
 template <int D>
 void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
     bodies_->begin(fluid_.domain, fluid_.time, dt);
@@ -160,7 +160,7 @@ void ReferenceSphSolver<D>::meet_bodies(Points& a, real dt) {
     }
 }
 
-/// d rho / dt = rate, with the new velocities from the old places, as SphSolver does. Walls' images in solids move with them.
+/// d rho / dt = rate, with the new velocities at the old positions, as in SphSolver. Images behind moving solids move with them.
 template <int D>
 void ReferenceSphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");

@@ -1,5 +1,5 @@
-// Smoothed particle hydrodynamics in plain double precision over all pairs on one thread: the step of SphSolver, as simply as it can be
-// written, with which every backend is compared. Its passes allocate what they return.
+// Smoothed particle hydrodynamics in plain double precision over all pairs on one thread: the step of SphSolver in its simplest form, the
+// reference for every backend. Its passes allocate their results.
 #pragma once
 #include "particles/reference_solver.hpp"
 #include "sph/method.hpp"
@@ -33,8 +33,8 @@ private:
     std::size_t own_bytes() const override { return x_.capacity() * sizeof(particles::Point); }
 
     std::vector<int> beside_bodies_;
-    std::vector<double> rise_;  // of the pressure in the last step
-    Points x_;                  // where the step began
+    std::vector<double> rise_;  // change of the pressure in the last step
+    Points x_;                  // positions at the start of the step
 };
 
 }  // namespace weir::sph

@@ -13,16 +13,16 @@ namespace weir::sph {
 
 namespace {
 
-/// A cell of the lattice on which particles begin.
+/// State of a cell of the initial particle lattice.
 enum class Place : char { empty, liquid, closed };
 
-/// Cells of the lattice, what stands in them, and how high particles stand there.
+/// Cells of the lattice, their state, and the height of their particles.
 template <int D>
 struct Vessel {
     Index<D> cells{};
-    int up = 0, way = 1;  // against gravity: axis and sign
+    int up = 0, way = 1;  // upwards: axis and sign
     std::vector<Place> places;
-    std::vector<real> top;  // of the particles in a cell, along `way` [m]; one that stands beside a body may be off the lattice
+    std::vector<real> top;  // height of the particles in a cell, along `way` [m]; particles beside a body may be off the lattice
 
     std::size_t linear(const Index<D>& I) const {
         std::size_t at = 0;
@@ -37,10 +37,10 @@ struct Vessel {
     }
 };
 
-/// Some particles together, and whether they rest.
+/// A connected set of particles, and whether it is at rest.
 struct Pool {
-    real low = infinity, high = -infinity;  // of their tops
-    bool held = true;                       // by walls, solids and each other, but above
+    real low = infinity, high = -infinity;  // of their heights
+    bool held = true;                       // by walls, solids and each other, except above
     bool has_top() const { return low <= high; }
 };
 
@@ -51,7 +51,7 @@ Index<D> cell_of(const particles::Domain<D>& domain, const Vessel<D>& v, const V
     return I;
 }
 
-/// Over ranks each has a part of the particles: all learn of all.
+/// In parallel each rank has a part of the particles: combines the cells of all ranks.
 template <int D>
 Vessel<D> vessel_of(const particles::Fluid<D>& fluid, int up, int way) {
     Vessel<D> v;
@@ -73,7 +73,7 @@ Vessel<D> vessel_of(const particles::Fluid<D>& fluid, int up, int way) {
     return v;
 }
 
-/// What a cell without particles is: solid within half a spacing of its middle (where particles no longer stand), or empty.
+/// State of a cell without particles: closed by a solid within half a spacing of its centre, otherwise empty.
 template <int D>
 Place look(const particles::Domain<D>& domain, Vessel<D>& v, const Index<D>& I) {
     Place& place = v.places[v.linear(I)];
@@ -84,7 +84,7 @@ Place look(const particles::Domain<D>& domain, Vessel<D>& v, const Index<D>& I) 
     return place;
 }
 
-/// The cells that belong together with the first one, and how they are held.
+/// The connected set of cells of the first one, and its support.
 template <int D>
 Pool find_pool(const particles::Domain<D>& domain, Vessel<D>& v, std::size_t first, int number, std::vector<int>& pool_of) {
     Pool pool;
@@ -118,7 +118,7 @@ Pool find_pool(const particles::Domain<D>& domain, Vessel<D>& v, std::size_t fir
     return pool;
 }
 
-constexpr real flat = 0.25;  // of a spacing
+constexpr real flat = 0.25;  // in spacings
 
 }  // namespace
 

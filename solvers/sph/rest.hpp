@@ -1,5 +1,5 @@
-// Which liquid of a scene begins at rest: bodies of particles under a flat top, on walls or solids below and beside. Its pressure begins as
-// that of its weight, where a column that begins without any falls onto its own sound waves and rings.
+// Finds the liquid of a scene that starts at rest: sets of particles with a flat top, supported by walls or solids below and beside. Its
+// initial pressure is hydrostatic; a column that starts without pressure would fall and oscillate acoustically.
 #pragma once
 #include "particles/fluid.hpp"
 
@@ -7,8 +7,8 @@
 
 namespace weir::sph {
 
-/// Raises `carried` of particles at rest to rho g times their depth [Pa]. Answers what a user should know of liquid that stands in a vessel
-/// and has no flat top; empty where there is none. Over ranks all call it together.
+/// Sets `carried` of particles at rest to rho g times their depth [Pa]. Returns a warning about liquid in a vessel without a flat top;
+/// otherwise empty. In parallel the call is collective.
 template <int D>
 std::string start_at_rest(particles::Fluid<D>& fluid);
 

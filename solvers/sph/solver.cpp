@@ -55,15 +55,15 @@ StepReport SphSolver<D>::step(real dt) {
     effects_.apply(Stage::force, flow_, dt, passes_);  // gravity and other fields
     kick(dt);
     if (bodies_) carry_bodies(dt);
-    this->hold();                                    // what is frozen
+    this->hold();                                    // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back(*bodies_, fluid_);           // of what pushed
+    if (bodies_) give_back(*bodies_, fluid_);           // by particles inside bodies
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     this->dismiss();
     this->hold_again();
-    this->conduct(dt);  // only where a substance is named
+    this->conduct(dt);  // only where the scene names a substance
     const auto end = this->end_step(particles::excess_of(fluid_, rho_rest_, this->vapour()), max_acceleration_);
     speed_ = end.speed, max_acceleration_ = end.acceleration;
     return this->report(dt, end.speed, end.compression);
@@ -82,7 +82,7 @@ void SphSolver<D>::find_neighbours() {
     params_.wall_rho = static_cast<float>(std::min(rho_rest_, fluid_.rho0));
 }
 
-/// Velocities are read beside own particles, and densities that go by their rates.
+/// Halo exchange of velocities, and of densities with the continuity equation.
 template <int D>
 void SphSolver<D>::find_pairs() {
     const real radius = options_.support * fluid_.domain.spacing;
@@ -121,8 +121,8 @@ void SphSolver<D>::find_densities() {
     });
 }
 
-/// d rho / dt = rate, in double precision. Like a position, density moves with the new velocities from the old places: symplectic Euler,
-/// under which sound is neutral, and what bounces off a wall loses energy to the error and gains none.
+/// d rho / dt = rate, in double precision. Like positions, densities use the new velocities at the old positions: symplectic Euler, under
+/// which acoustic waves are neutral; a reflection at a wall loses energy to the error but never gains.
 template <int D>
 void SphSolver<D>::advance_densities(real dt) {
     const auto timed = passes_.time("density");
@@ -133,7 +133,7 @@ void SphSolver<D>::advance_densities(real dt) {
     const auto rate = table.rate[options_.diffusion > 0];
     pairs_.list().each_chunk([&](const ListChunk& chunk) { rate(job, chunk); });
     const auto& solids = fluid_.domain.solids;
-    if (!solids.empty() && solids.moving())  // their walls' images move with them
+    if (!solids.empty() && solids.moving())  // images behind them move with them
         solids_.each_near(pairs_.a(), [&](int k, const Vec<D>& at, const float* term) {
             const Vec<D> u = solids.velocity(at);
             real into = 0;
@@ -148,7 +148,7 @@ void SphSolver<D>::advance_densities(real dt) {
     });
 }
 
-/// Velocities and one more number, and in the positions 1 / rho, as the passes read them; images get what their owners have.
+/// Stores velocities with one more number, and 1 / rho in the positions, in the layout of the passes; images get their owners' values.
 template <int D>
 template <class F>
 void SphSolver<D>::load(F&& more) {
@@ -191,13 +191,13 @@ void SphSolver<D>::find_forces() {
     if (sticky_solids_) drag_at_solids();
 }
 
-/// A solid that is stuck to drags as a wall does: 2 nu plane / phi along its surface (Morris et al. 1997, sec. 3.2; kernels/sph_pair.inl).
+/// Drag of a no-slip solid, as of a wall: 2 nu plane / phi along its surface (Morris et al. 1997, sec. 3.2; kernels/sph_pair.inl).
 template <int D>
 void SphSolver<D>::drag_at_solids() {
     const auto& solids = fluid_.domain.solids;
     solids_.each_near(pairs_.a(), [&](int k, const Vec<D>& at, const float* term) {
         if (pairs_.is_image(k) || !solids[solids.nearest(at)].no_slip) return;
-        Vec<D> pull{};  // against the surface's normal, as long as the integral over its plane
+        Vec<D> pull{};  // opposite to the surface's normal; its length is the integral over the plane
         for (int a = 0; a < D; ++a) pull[a] = static_cast<real>(term[a]);
         const real plane = norm(pull);
         if (plane == 0) return;
@@ -207,7 +207,7 @@ void SphSolver<D>::drag_at_solids() {
     });
 }
 
-/// What particles feel of bodies, and what the passes over pairs leave out of it.
+/// Forces of bodies on particles, including terms that the pair passes omit.
 template <int D>
 void SphSolver<D>::meet_bodies(real dt) {
     const auto timed = passes_.time("bodies");
@@ -217,7 +217,7 @@ void SphSolver<D>::meet_bodies(real dt) {
         options_, exact_, fluid_, *bodies_, [&](int k) { return pairs_.owner(k); }, rise_, dt, beside_bodies_, acceleration_.data());
 }
 
-/// V += dt F / (M + K); what of F the bodies' own change takes off particles get back.
+/// V += dt F / (M + K); returns to particles the part of F that the bodies' own change removes.
 template <int D>
 void SphSolver<D>::carry_bodies(real dt) {
     const auto timed = passes_.time("bodies");
@@ -225,14 +225,14 @@ void SphSolver<D>::carry_bodies(real dt) {
     give_back(*bodies_, fluid_);
 }
 
-/// X += dt V. Particles that would come to be inside push.
+/// X += dt V. Particles that would end inside push the bodies.
 template <int D>
 void SphSolver<D>::move_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     sph::move_bodies(*bodies_, fluid_, beside_bodies_, dt);
 }
 
-/// v += dt a, and the largest a.
+/// v += dt a; finds the largest a.
 template <int D>
 void SphSolver<D>::kick(real dt) {
     const auto timed = passes_.time("integrate");

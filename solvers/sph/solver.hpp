@@ -1,5 +1,5 @@
-// Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003; weakly compressible) in two and three dimensions, on the same engine
-// as PBF: density, equation of state, forces, symplectic integration.
+// Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003; weakly compressible) in two and three dimensions, on the same base as
+// PBF: density, equation of state, forces, symplectic integration.
 #pragma once
 #include "particles/threaded_solver.hpp"
 #include "scene/solver_kind.hpp"
@@ -41,11 +41,11 @@ private:
     std::size_t own_bytes() const override;
 
     particles::single::SphParams params_;
-    particles::plain::SphParams exact_;  // as bodies read them
+    particles::plain::SphParams exact_;  // for bodies
     std::vector<float> velocity_, acceleration_, density_;
-    std::vector<int> beside_bodies_;  // particles of the state
-    std::vector<real> rise_;          // of the pressure in the last step, where there are bodies [Pa]
-    bool sticky_solids_ = false;      // whether the liquid sticks to any
+    std::vector<int> beside_bodies_;  // state indices of particles
+    std::vector<real> rise_;          // change of the pressure in the last step, with bodies [Pa]
+    bool sticky_solids_ = false;      // whether any solid is no-slip
 };
 
 }  // namespace weir::sph

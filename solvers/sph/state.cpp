@@ -92,7 +92,7 @@ StepLimit stable_step(const Options& o, const particles::Fluid<D>& fluid, real s
     return {0.5 * o.support * fluid.domain.spacing / (o.sound + speed), "sound crosses half the support"};
 }
 
-/// Density changes by about the square of the Mach number: by a hundredth at 1/10, by a tenth at this one.
+/// Density varies by about the square of the Mach number: by a hundredth at 0.1, by a tenth at this one.
 std::string too_fast(const Options& o, real speed, real time) {
     constexpr real most = 0.3;
     if (!(speed > most * o.sound)) return {};

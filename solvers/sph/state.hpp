@@ -1,5 +1,5 @@
-// What a scene of SPH becomes on any backend: the rest density over time, the first pressure, kernels for the passes over velocities,
-// limits of the time step.
+// Initialization of an SPH scene on any backend: the rest density over time, the initial pressure, kernels for the velocity passes, step
+// limits.
 #pragma once
 #include "core/parallel.hpp"
 #include "particles/bodies_in_liquid.hpp"
@@ -12,15 +12,15 @@
 
 namespace weir::sph {
 
-/// The scene's liquid at the start. Throws BadScene where walls are stuck to without viscosity.
+/// The scene's liquid at the start. Throws BadScene for no-slip walls without viscosity.
 template <int D>
 particles::Fluid<D> first_fluid(const scene::Scene& scene);
 
-/// Whether the liquid sticks to any.
+/// Returns whether any solid is no-slip.
 template <int D>
 bool sticky(const geometry::Solids<D>& solids);
 
-/// The kernels of SPH as XSPH and vorticity read them.
+/// The kernels of SPH for XSPH and vorticity.
 template <int D>
 particles::single::PbfParams smoothing_params(const particles::single::SphParams& params, const particles::Fluid<D>& fluid);
 
@@ -37,8 +37,8 @@ private:
     real rho0_;
 };
 
-/// The pressure of a liquid at rest, below initial.surface or, where the scene does not name it, where a liquid rests (rest.hpp), and the
-/// densities that go with that. Answers what a user should know of it.
+/// The hydrostatic pressure, below initial.surface or, where the scene does not give it, of liquid at rest (rest.hpp), and the
+/// corresponding densities. Returns a warning for the user, or an empty text.
 template <int D>
 std::string start_pressure(const scene::Scene& scene, const Options& options, particles::Fluid<D>& fluid);
 
@@ -46,27 +46,26 @@ std::string start_pressure(const scene::Scene& scene, const Options& options, pa
 template <int D>
 real step_limit(const Options& options, const particles::Fluid<D>& fluid, real speed, real acceleration);
 
-/// The period of the shortest capillary wave that the support holds (Brackbill, Kothe & Zemach 1992).
+/// The period of the shortest capillary wave resolved by the support (Brackbill, Kothe & Zemach 1992).
 template <int D>
 real tension_limit(const Options& options, const particles::Fluid<D>& fluid);
 
-/// Sound crosses half the support in it. speed: of the fastest particle after the last step; not a number before the first [m/s].
+/// Sound crosses half the support in it. speed: maximum over the particles after the last step; NaN before the first [m/s].
 template <int D>
 StepLimit stable_step(const Options& options, const particles::Fluid<D>& fluid, real speed);
-/// What is wrong with particles of this speed, in one line; empty where nothing is.
+/// A warning about particles of this speed, in one line; otherwise empty.
 std::string too_fast(const Options& options, real speed, real time);
 
-/// What a body gives to a particle i that meets it, before the body's own change: the push of the pressure, which goes on inside the body
-/// as it does behind a wall, and the drag of one that the liquid sticks to. The pressure is that of the step's end, as the last step
-/// changed it
-/// (`rise`): with that of its begin a body that weighs nothing beats against the water that it moves, in six steps, and nothing damps it.
-/// Returns the part that the passes over pairs give no solid [m/s^2]: of that change, and of the pressure behind the body what grows across
-/// its surface.
+/// The velocity change of a particle i by a coupled body, before the body's own change: by the pressure, extrapolated into the body as
+/// behind a wall, and by the drag of a no-slip body. The pressure is that at the end of the step, extrapolated by its change in the last
+/// step (`rise`). With that at the start, a massless body oscillates against the displaced water with a period of six steps, undamped.
+/// Returns the part that the pair passes omit for solids [m/s^2]: due to that change, and to the pressure gradient normal to the body's
+/// surface.
 template <int D>
 Vec<D> meet_body(const Options& options, const particles::plain::SphParams& params, const particles::Fluid<D>& fluid, int i, real rise,
                  real dt, particles::Meeting<D>& m);
-/// The same of all meetings, whose sorted particles k belong to owner(k) of the state: `beside` are these, and what the passes leave out
-/// comes to the accelerations (float4). rise: of the pressures in the last step.
+/// The same for all coupling pairs, whose sorted particles k belong to owner(k) of the state: `beside` are these; the omitted terms are
+/// added to the accelerations (float4). rise: change of the pressures in the last step.
 template <int D, class Owner>
 void meet_bodies(const Options& options, const particles::plain::SphParams& params, const particles::Fluid<D>& fluid,
                  particles::BodiesInLiquid<D>& bodies, Owner&& owner, const std::vector<real>& rise, real dt, std::vector<int>& beside,
@@ -82,20 +81,20 @@ void meet_bodies(const Options& options, const particles::plain::SphParams& para
         for (int a = 0; a < D; ++a) acceleration[4 * k + a] += static_cast<float>(beyond[a]);
     });
 }
-/// v gets what the bodies' own change takes off what they gave.
+/// Adds to v the part of the bodies' forces that their own change removes.
 template <int D>
 void give_back(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid);
-/// Meetings with the bodies that particles would drift into.
+/// Finds coupling pairs with the bodies that particles would drift into.
 template <int D>
 void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>& fluid, const std::vector<int>& near, real dt);
-/// X += dt V, and these meetings. Their bodies' velocities are those of the step's end then.
+/// X += dt V, and these pairs. Afterwards the bodies have their velocities at the end of the step.
 template <int D>
 void move_bodies(particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid, const std::vector<int>& near, real dt);
 
-/// x += dt v. What would enter a wall or a solid is put back and loses its speed into it.
+/// x += dt v. A particle that would enter a wall or a solid is moved back and loses its normal velocity.
 template <int D>
 void drift(particles::Fluid<D>& fluid, real dt);
-/// The same in two parts: time goes on, and a particle moves.
+/// The same in two parts: advances time, and moves a particle.
 template <int D>
 void advance_time(particles::Fluid<D>& fluid, real dt);
 template <int D>

@@ -1,4 +1,4 @@
-// Surface tension as an effect: two passes over pairs, one for the normals of the surface and one for the stress (kernels/sph_pair.inl).
+// Surface tension as an effect: two pair passes, one for the surface normals and one for the stress (kernels/sph_pair.inl).
 #pragma once
 #include "particles/flow.hpp"
 #include "particles/solid_terms.hpp"
@@ -13,7 +13,7 @@ public:
         : params_(params), walls_(walls), solids_(solids) {}
     Stage stage() const override { return Stage::force; }
     void needs(FieldPlan& plan) const override { plan.scratch("change of pairs"); }
-    /// Reads 1 / rho in the pairs' positions, where the force pass has left it.
+    /// Reads 1 / rho from the pairs' positions, where the force pass has stored it.
     void apply(particles::Flow<D>& flow, real dt) override;
     std::size_t bytes() const override { return normal_.capacity() * sizeof(float); }
 

@@ -27,7 +27,7 @@ Basin::Basin(const Restoring& by, real level, real depth, const Box& box, Values
         for (int n = 0; n < nz_; ++n) {
             const std::size_t j = series_.at(m, n);
             if (m + n == 0)
-                mode_[j] = 0;  // what stands there is the error of the mean
+                mode_[j] = 0;  // its value is the error of the mean
             else
                 omega_[j] = frequency(by, std::hypot(kx(m), kz(n)), depth);
         }
@@ -82,8 +82,8 @@ void Basin::fill_layer(real y, std::array<real*, 3> out, std::size_t stride) {
             SinesAlong::z, [&](int m, int n) { return -kz(n) * along(m, n); }, out[2], stride);
 }
 
-/// add(sum, m, n) of each mode but the constant one, column by column. Ranks that store their own modes alone are asked together, and each
-/// adds to the sum of those before it.
+/// add(sum, m, n) for each mode except the constant one, column by column. With distributed storage the call is collective: a rank-ordered
+/// reduction.
 template <class Sum, class F>
 Sum Basin::sum_at(const F& add) const {
     const auto add_held = [&](Sum& sum) {

@@ -1,5 +1,5 @@
-// The linear problem of Cauchy and Poisson in a box of water with upright walls: a surface that is let go at rest swings in its cosine
-// modes, each with its own frequency (Lamb 1932, sec. 228, 257).
+// The linear Cauchy-Poisson problem in a box of water with vertical walls: a surface released from rest oscillates in its cosine modes,
+// each with its own frequency (Lamb 1932, sec. 228, 257).
 //
 //     y(x, z, t) = sum c cos(m pi x / L) cos(n pi z / W) cos(omega t),     omega^2 = (g k + sigma k^3/rho) tanh(k d)
 #pragma once
@@ -11,7 +11,7 @@ namespace weir::waves {
 
 class Basin final : public Model {
 public:
-    /// `level`: of the water at rest, so deep; `heights`: of the surface at t = 0 over that, at the sheet's points.
+    /// `level`: height of the water at rest, of depth `depth`; `heights`: initial surface relative to it, at the sheet's points.
     Basin(const Restoring& by, real level, real depth, const Box& box, Values heights);
     void set_time(real t) override;
     std::optional<real> level() const override { return level_; }

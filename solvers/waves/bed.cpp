@@ -27,7 +27,7 @@ real Bed::slope(real where) const {
     return (depth[i + 1] - depth[i]) / (x[i + 1] - x[i]);
 }
 
-/// Between nodes the phase is a cubic through phases and slopes: the fourth power of a node's distance, here below 1e-9 of a turn.
+/// Between nodes the phase is a cubic Hermite interpolant: its error, of fourth order in the node distance, is below 1e-9 of a turn.
 Shoaled::Shoaled(const Bed& bed, const Restoring& by, real kx, real kz, real omega)
     : from_(bed.x.front()), step_((bed.x.back() - bed.x.front()) / 4096), kz_(kz), bed_(bed) {
     constexpr int nodes = 4096;
@@ -43,7 +43,7 @@ Shoaled::Shoaled(const Bed& bed, const Restoring& by, real kx, real kz, real ome
         kx_.push_back(here);
         growth_.push_back(std::sqrt(flux / (group_speed(by, k, bed.at(x)) * std::abs(here) / k)));
         if (i == nodes) break;
-        const real middle = x + 0.5 * step_, off = 0.5 * step_ * std::sqrt(0.6);  // Gauss, three points
+        const real middle = x + 0.5 * step_, off = 0.5 * step_ * std::sqrt(0.6);  // Gauss quadrature, three points
         phase_.push_back(phase_.back() + step_ * (5 * along(middle - off) + 8 * along(middle) + 5 * along(middle + off)) / 18);
     }
 }

@@ -1,10 +1,10 @@
-// A bed whose depth changes along x, and what it does to a wave that comes from deep water with a given frequency (Fournier & Reeves 1986,
-// with the exact dispersion relation in the place of their fit):
+// A bed with a depth that varies along x, and its effect on a wave of given frequency from deep water (Fournier & Reeves 1986, with the
+// exact dispersion relation instead of their fit):
 //
 //     omega^2 = (g k + sigma k^3/rho) tanh(k h(x)),   k_z = const (Snell),   phase = integral of sqrt(k^2 - k_z^2) dx
 //
-// and its height, which they leave as it is, by conservation of energy along rays: a^2 c_g cos(heading) = const (Green's law), up to the
-// height at which waves break, 0.78 h (McCowan 1894).
+// They leave the height unchanged; here it follows from conservation of energy along rays: a^2 c_g cos(heading) = const (Green's law),
+// limited by the breaking height, 0.78 h (McCowan 1894).
 #pragma once
 #include "waves/dispersion.hpp"
 
@@ -12,7 +12,7 @@
 
 namespace weir::waves {
 
-/// Depth at points along x, straight lines between them, level beyond them.
+/// Depth at points along x, linear between them, constant beyond them.
 struct Bed {
     std::vector<real> x, depth;
     bool empty() const { return x.empty(); }

@@ -6,7 +6,7 @@
 
 namespace weir::waves {
 
-/// FFTW_ESTIMATE: measured plans would differ from run to run. Rows are transformed where they are wanted, which is not aligned.
+/// FFTW_ESTIMATE: measured plans would differ between runs. Rows are transformed in place of use, which is not aligned.
 struct Cosines::Plans {
     struct Axis {
         fftw_plan forth = nullptr, cosines = nullptr, sines = nullptr;
@@ -20,7 +20,7 @@ struct Cosines::Plans {
         Axis(const Axis&) = delete;
         Axis& operator=(const Axis&) = delete;
     };
-    Aligned<real> line;  // to plan with
+    Aligned<real> line;  // for planning
     Axis row, column;
     Plans(int nx, int nz)
         : line(aligned<real>(static_cast<std::size_t>(std::max(nx, nz)))), row(nx, line.get(), FFTW_UNALIGNED), column(nz, line.get(), 0) {
@@ -37,7 +37,7 @@ Cosines::Cosines(int nx, int nz)
       plans_(std::make_unique<Plans>(nx, nz)) {}
 Cosines::~Cosines() = default;
 
-/// FFTW's DCT-II is twice the sum over points; a mode's amplitude is twice its mean, but that of a constant.
+/// FFTW's DCT-II is twice the sum over points; a mode's amplitude is twice its mean, except for the constant.
 std::vector<real> Cosines::analyse(Values& field) {
     const auto row_at = [&](int k) { return field.data() + static_cast<std::ptrdiff_t>(k) * nx_; };
     const PlaneRange rows = transposition_.own_rows(), columns = transposition_.own_columns();

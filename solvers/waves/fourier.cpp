@@ -12,7 +12,7 @@ fftw_complex* as_fftw(Complex* at) { return reinterpret_cast<fftw_complex*>(at);
 
 }  // namespace
 
-/// FFTW_ESTIMATE: measured plans would differ from run to run, and so would the last bits of the answer.
+/// FFTW_ESTIMATE: measured plans would differ between runs, and so would the last bits of the result.
 struct Synthesis::Plans {
     PlaneRange held;  // of the field's rows
     std::size_t row_length, row_count;

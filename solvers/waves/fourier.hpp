@@ -1,5 +1,5 @@
-// A real field on the sheet from the coefficients of its waves (FFTW), row by row with the same plan for every row: threads share rows, and
-// no bit depends on how many there are.
+// A real field on the sheet from the coefficients of its waves (FFTW), row by row with one plan for all rows: threads share rows, and
+// results are bitwise independent of their number.
 //
 //     out(i, k) = sum over m, n of c(m, n) exp(2 pi i (m i / nx + n k / nz)),   c(-m, -n) = conj c(m, n)
 #pragma once
@@ -7,7 +7,7 @@
 
 namespace weir::waves {
 
-/// The half plane m = 0 .. nx/2, n = 0 .. nz - 1, of which some columns are stored here; n fastest.
+/// The half plane m = 0 .. nx/2, n = 0 .. nz - 1, of which some columns are stored on this rank; n fastest.
 struct HalfPlane {
     int nx = 1, nz = 1;
     PlaneRange held = {0, nx / 2 + 1};
@@ -19,21 +19,21 @@ struct HalfPlane {
     }
     /// n as a wavenumber: -nz/2 .. nz/2.
     int signed_n(int n) const { return 2 * n > nz ? n - nz : n; }
-    /// Waves of which a grid sees only one of two phases, sine or cosine.
+    /// Waves whose sine or cosine phase the grid does not resolve.
     bool ambiguous(int m, int n) const { return 2 * m == nx || 2 * n == nz; }
 };
 
-/// Over ranks only own rows are written.
+/// In parallel only own rows are written.
 class Synthesis {
 public:
-    /// What this rank stores: all of it, or, where ranks hold their own rows alone, its columns.
+    /// The columns that this rank stores: all, or its own with distributed storage.
     static HalfPlane held_plane(int nx, int nz);
     explicit Synthesis(const HalfPlane& plane);
     ~Synthesis();
     Synthesis(const Synthesis&) = delete;
     Synthesis& operator=(const Synthesis&) = delete;
 
-    /// `column(m, at)` writes the nz coefficients of column m; row k of the field goes to out + k stride.
+    /// `column(m, at)` writes the nz coefficients of column m; row k of the field is written to out + k stride.
     template <class F>
     void operator()(const F& column, real* out, std::size_t stride) {
         const PlaneRange own = own_columns();
@@ -43,7 +43,7 @@ public:
         });
         rows(out, stride);
     }
-    /// The columns for which this rank is asked.
+    /// The columns that this rank transforms.
     PlaneRange own_columns() const { return transposition_.own_columns(); }
     std::size_t bytes() const;
 

@@ -1,4 +1,4 @@
-// What a scene may say to the solver "waves".
+// The schema of the solver "waves".
 #include "core/traffic.hpp"
 #include "scene/gravity.hpp"
 #include "waves/fourier.hpp"
@@ -183,11 +183,11 @@ std::vector<Variant> effects() {
              {"below"}}};
 }
 
-/// Everything is cut.
+/// Everything is distributed.
 void over_ranks(const scene::Scene&) {}
 
-/// Of a step over ranks: each sum of a sea's or a basin's waves in 3D is transposed once, and while the surface is not folded all look for
-/// its least Jacobian.
+/// Messages of a step in parallel: each sum of a sea's or a basin's waves in 3D is transposed once. While the surface is not folded, its
+/// least Jacobian is reduced over the ranks.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape&) {
     const Box box(scene);
     Tally tally(of.cut, of.rank);
@@ -199,7 +199,7 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     const bool sideways = sea ? waves.number("choppiness") > 0 : waves.text("model") == "gerstner";
     if (sideways && !scene.effect("foam")) tally.gather({sizeof(real), box.nz()});
     if (!sea && !basin) return tally.sent();
-    // heights; where points stand and how their neighbours were moved; velocities of the surface and, below it, of every layer
+    // heights; horizontal displacements and their derivatives; velocities of the surface and, below it, of every layer
     const int sums = 1 + (sideways ? 5 : 0) + (waves.flag("velocity") ? 3 * (box.ny() > 1 ? 1 + box.ny() : 1) : 0);
     const int count = sea ? HalfPlane{box.nx(), box.nz()}.columns() : box.nx();
     const std::size_t each = sea ? sizeof(Complex) : sizeof(real);

@@ -32,8 +32,9 @@ void Model::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
     });
 }
 
-/// Newton's step where a patch keeps a twentieth of its area, else the plain x <- X - D(x), which goes to a rest point of any surface that
-/// is moved by less than its waves are long. Fifty steps are enough for steepness 0.9; the residual is not asked for where it folds.
+/// Newton's step where a patch keeps at least a twentieth of its area, otherwise the plain iteration x <- X - D(x). It converges to a rest
+/// point for any surface whose displacement is shorter than its waves. Fifty steps suffice for steepness 0.9; the residual is not checked,
+/// because the surface may be folded.
 Vec<2> rest_of(const Model& model, real x, real z) {
     Vec<2> rest{{x, z}};
     if (!model.sideways()) return rest;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Complex i{0, 1};
 
-/// Gauss-Legendre points of a cell along one axis: many where the spectrum bends within a cell, about the origin, few far out.
+/// Gauss-Legendre points of a cell along one axis: many near the origin, where the spectrum varies within a cell, few far from it.
 struct Rule {
     int points;
     std::array<real, 12> x, weight;  // on [-1/2, 1/2]
@@ -72,7 +72,7 @@ Ocean::Wave Ocean::wave(int m, int n) const {
     return {kx, kz, std::sqrt(kx * kx + kz * kz)};
 }
 
-/// The spectrum integrated over the wave's cell, in polar coordinates E(k) D(theta) / k, or E(k) on a line.
+/// The spectrum integrated over the wave's cell, with the density E(k) D(theta) / k in the plane, or E(k) on a line.
 real Ocean::variance_of(int m, int n) const {
     const Rule& r = rule_for(std::max(std::abs(m), std::abs(n)));
     const Spectrum& s = sea_.spectrum;
@@ -94,8 +94,8 @@ real Ocean::variance_of(int m, int n) const {
     return sum * dkx_ * dkz_;
 }
 
-/// Half of each wave stands in the half plane for k and half, conjugate, for -k, so that what comes out is real. Phases are those of the
-/// scene's origin of coordinates: a finer grid has the same sea, and more of it.
+/// The half plane stores one half of each wave at k, and the conjugate half belongs to -k, so that the sum is real. Phases refer to the
+/// scene's origin: a finer grid has the same sea with additional waves.
 void Ocean::set_amplitudes() {
     const auto half = [&](int m, int n) {  // signed
         const Wave w{m * dkx_, n * dkz_, std::hypot(m * dkx_, n * dkz_)};
@@ -122,7 +122,7 @@ void Ocean::set_amplitudes() {
     const real variance = 2 * plane_sum(plane_.columns(), [&](int m) {  // a^2/2 = 2 |a/2|^2
                               real sum = 0;
                               for (int n = 0; n < plane_.nz; ++n)
-                                  // the column m = 0 holds k and -k both, every other column only one of the two
+                                  // the column m = 0 contains both k and -k, every other column only one of them
                                   sum += (m == 0 ? 0.5 : 1.0) * (std::norm(forth_[plane_.at(m, n)]) + std::norm(back_[plane_.at(m, n)]));
                               return sum;
                           });
@@ -147,7 +147,7 @@ void Ocean::turn(int begin, int end) const {
     });
 }
 
-/// Of a point every wave is wanted: each rank that is asked turns the others' waves too.
+/// A point value needs every wave: a rank that stores all of them advances also the others' waves.
 void Ocean::turn_all() const {
     if (turned_ == PlaneRange{0, plane_.columns()}) return;
     turn(0, turned_.begin);
@@ -209,9 +209,8 @@ void Ocean::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
     }
 }
 
-/// add(sum, wave, place, e^(i k . x) doubled where the half plane holds only one of k and -k) of each wave, in their order: the real part
-/// of the sum is the field at (x, z). Ranks that hold their own waves alone are asked together, and each adds to the sum of those before
-/// it.
+/// add(sum, wave, index, e^(i k . x), doubled where the half plane contains only one of k and -k) for each wave, in order: the real part of
+/// the sum is the field at (x, z). With distributed storage the call is collective: a rank-ordered reduction.
 template <class Sum, class F>
 Sum Ocean::sum_at(real x, real z, const F& add) const {
     std::vector<Complex> along_z(static_cast<std::size_t>(plane_.nz));

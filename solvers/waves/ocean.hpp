@@ -1,8 +1,8 @@
-// A wind sea on a tile that repeats: every wave that the tile can carry, with the variance that the spectrum has in its cell of the plane
-// of wavenumbers and a random phase, summed by FFT (Mastin, Watterberg & Mareda 1987; Tessendorf 2001).
+// A wind sea on a periodic tile: every wave that the tile resolves, with the variance of the spectrum in its cell of the wavenumber plane
+// and a random phase, summed by FFT (Mastin, Watterberg & Mareda 1987; Tessendorf 2001).
 //
 //     h(x, t) = sum a cos(k . x - omega(k) t + phase),   a^2/2 = integral of E(k) D(theta)/k over the cell
-//     D(x, t) = -choppiness sum (k/|k|) coth(k d) a sin(...): at 1 the sideways half of the linear orbits
+// D(x, t) = -choppiness sum (k/|k|) coth(k d) a sin(...): for 1 the horizontal part of the linear orbits
 #pragma once
 #include "waves/fourier.hpp"
 #include "waves/model.hpp"
@@ -17,9 +17,9 @@ struct Sea {
     real heading = 0;  // of the wind, from x towards z [rad]
     real spread = 1;   // s
     real choppiness = 0;
-    real shortest = 0;  // waves below this length are left out [m]
+    real shortest = 0;  // shorter waves are omitted [m]
     std::uint64_t seed = 1;
-    bool gaussian = false;  // amplitudes are random too, about the same mean square
+    bool gaussian = false;  // amplitudes are random too, with the same mean square
 };
 
 class Ocean final : public Model {
@@ -39,9 +39,9 @@ private:
         real kx, kz, k;
     };
     Wave wave(int m, int n) const;
-    real variance_of(int m, int n) const;  // of the wave with these signed numbers
+    real variance_of(int m, int n) const;  // of the wave with these signed indices
     void set_amplitudes();
-    void turn(int begin, int end) const;  // columns of waves, to the present
+    void turn(int begin, int end) const;  // advances columns of waves to the present time
     void turn_all() const;
     real coth(std::size_t at) const { return along_.empty() ? 1 : along_[at]; }
     template <class F>
@@ -53,12 +53,12 @@ private:
     HalfPlane plane_;
     real dkx_, dkz_, first_x_, first_z_, carried_ = 1;
     std::vector<Complex> forth_, back_;             // of the waves k and -k at t = 0
-    mutable std::vector<Complex> height_, moving_;  // now: their sum, and their difference, from which velocities are made
+    mutable std::vector<Complex> height_, moving_;  // now: their sum, and their difference, which gives velocities
     real t_ = 0;
-    /// The columns of which that is known: over ranks this one's, until one that holds all is asked for a point.
+    /// The columns with present values: in parallel this rank's, until a rank that stores all needs a point value.
     mutable PlaneRange turned_{0, 0};
     std::vector<real> omega_, along_;  // along_: coth(k d), where the sea has a bed
-    Values xx_, zz_, xz_;              // of the sideways displacement; scratch
+    Values xx_, zz_, xz_;              // derivatives of the horizontal displacement; scratch
     Synthesis synthesis_;
 };
 

@@ -1,5 +1,5 @@
-// Random numbers from counters, not from a state: the wave (m, n) of a tile has the same phase however many waves the grid carries, on any
-// machine and thread. The splitmix64 finaliser (Steele, Lea & Flood 2014).
+// Random numbers from counters, without state: the wave (m, n) of a tile has the same phase for any grid resolution, machine and thread.
+// The splitmix64 finaliser (Steele, Lea & Flood 2014).
 #pragma once
 #include "core/types.hpp"
 
@@ -14,7 +14,7 @@ inline std::uint64_t mixed(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// In (0, 1), of draw number `draw` for the wave (m, n).
+/// In (0, 1): draw number `draw` of the wave (m, n).
 inline real uniform(std::uint64_t seed, int m, int n, int draw) {
     const auto word = [](int i) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)); };
     const std::uint64_t wave = word(m) << 32 | word(n);

@@ -16,9 +16,9 @@ namespace weir::waves {
 
 namespace {
 
-constexpr real fewest_cells = 4;     // to a wave that a grid is to show
+constexpr real fewest_cells = 4;     // minimum per wavelength that a grid must resolve
 constexpr real miche_of_sea = 0.78;  // significant height over depth beyond which most waves would have broken (McCowan 1894)
-/// A weaker acceleration moves no wave that anybody waits for: a metre of water needs a quarter of an hour for a turn.
+/// A weaker acceleration has no visible effect: for a length of one metre the time scale sqrt(L/g) is a quarter of an hour.
 constexpr real no_gravity = 1e-6;
 
 struct Reader {
@@ -43,7 +43,7 @@ struct Reader {
         if (std::abs(e[1]) > 1e-6) refuse(path + "heading", fmt::format("in 2D waves travel along x: {:g} rad is neither 0 nor pi", angle));
         return {{e[0] < 0 ? -1.0 : 1.0, 0}};
     }
-    /// The shorter of what the grid's cells show along a heading.
+    /// The larger horizontal cell size, which limits the resolved waves.
     real widest_cell() const { return box.dim == 3 ? std::max(box.spacing[0], box.spacing[2]) : box.spacing[0]; }
     void check_shown(real length, const std::string& key, const std::string& what) const {
         if (length < fewest_cells * widest_cell())
@@ -210,7 +210,7 @@ std::unique_ptr<Model> Reader::stokes() const {
     return std::make_unique<Stokes>(wave);
 }
 
-/// The top of the liquid from the floor up at a place [m]; NaN where there is liquid over air.
+/// The height of the liquid column that stands on the floor at a point [m]; NaN where there is liquid above air.
 template <int D>
 class Tops {
 public:

@@ -1,4 +1,4 @@
-// From a scene to waves, and what no procedural wave can be.
+// Reads waves from a scene, and rejects scenes that procedural waves cannot represent.
 #pragma once
 #include "scene/scene.hpp"
 #include "waves/dispersion.hpp"

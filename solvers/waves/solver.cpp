@@ -63,7 +63,7 @@ void Waves::set_time(real t) {
     compute();
 }
 
-/// Everything that is shown, at the present time.
+/// Computes all output fields at the present time.
 void Waves::compute() {
     {
         const auto timed = passes_.time("surface");
@@ -75,7 +75,7 @@ void Waves::compute() {
     if (foam_below_) make_foam();
 }
 
-/// Every field of which over ranks each has its planes: in 2D the sheet is everybody's.
+/// The distributed fields in parallel: in 2D the sheet is replicated.
 std::vector<Values*> Waves::shared() {
     std::vector<Values*> list;
     const auto add = [&](Values& values) {
@@ -90,12 +90,11 @@ std::vector<Values*> Waves::shared() {
     return list;
 }
 
-/// What whoever looks may read, from whoever owns it: the planes beside the cuts where each rank holds no more, else all. All ranks look at
-/// the same time.
+/// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
 void Waves::bring() const {
     if (brought_) return;
     const OwnPlanes mine = held_.own();
-    auto& own = const_cast<Waves&>(*this);  // what is written is what was not here: the state stays the same
+    auto& own = const_cast<Waves&>(*this);  // only planes of other ranks are written: the state does not change
     if (held_.alone()) {
         std::vector<Planes> all;
         for (Values* values : own.shared()) all.push_back(planes_of(*values));
@@ -118,8 +117,8 @@ void Waves::place_surface() {
     });
 }
 
-/// The distance to the surface along y, negative in the water, and the velocity layer by layer. Under a surface whose points move sideways
-/// its height over a column is looked for.
+/// The distance to the surface along y, negative in the water, and the velocity, layer by layer. With horizontal displacements the surface
+/// height above a column is found iteratively.
 void Waves::fill_water() {
     const auto timed = passes_.time("water");
     const auto nx = static_cast<std::size_t>(box_.nx()), ny = static_cast<std::size_t>(box_.ny()), row = nx * ny;
@@ -140,7 +139,7 @@ void Waves::fill_water() {
     if (with_velocity_) model_->fill_water(box_, level_, water_);
 }
 
-/// All of it where the surface is folded over, none where a patch keeps the part `below` of its area.
+/// 1 where the surface is folded, 0 where a patch keeps at least the fraction `below` of its area.
 real Waves::foam_of(real jacobian) const { return *foam_below_ > 0 ? std::clamp(1 - jacobian / *foam_below_, 0.0, 1.0) : 0; }
 
 void Waves::make_foam() {
@@ -216,7 +215,7 @@ real Waves::least_jacobian() const {
     return -most_of_rows(box_, least_of_row);
 }
 
-/// The part of the sheet's patches that have any.
+/// The fraction of the sheet's patches with foam.
 real Waves::foam_cover() const {
     const OwnPlanes mine = held_.own();
     const real covered = sum_of_rows(box_, [&](int k) {
@@ -236,7 +235,7 @@ std::string Waves::concern() const {
         time_, least);
 }
 
-/// Means over the area above which the surface stands: a point counts as much as its patch has been stretched.
+/// Means over the horizontal area: each point is weighted by the relative area of its patch.
 std::vector<Integral> Waves::integrals() const {
     const auto nx = static_cast<std::size_t>(box_.nx());
     const OwnPlanes mine = held_.own();

@@ -1,5 +1,5 @@
-// The solver "waves": a surface that is a formula of place and time. A step only sets the time; the surface is then computed afresh, so
-// that no error is carried on and any time may be asked for at once.
+// The solver "waves": a surface given by a formula of position and time. A step only sets the time and evaluates the surface, so errors do
+// not accumulate and any time can be requested directly.
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
@@ -11,7 +11,7 @@
 
 namespace weir::waves {
 
-/// Over ranks: would each hold its own planes of a scene alone? Not where somebody looks at whole fields on all ranks.
+/// In parallel: returns whether fields can have distributed storage: not where whole fields are read on all ranks.
 bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 
 class Waves final : public Solver {
@@ -19,13 +19,13 @@ public:
     explicit Waves(const scene::Scene& scene);
 
     StepReport step(real dt) override;
-    /// Nothing limits a step: the whole scene may be one.
+    /// Steps have no limit: the whole scene may be one step.
     real advised_dt() const override { return end_; }
     bool checks_itself() const override { return true; }
     std::string concern() const override;
     FieldSet fields() const override;
     bool holds_own_planes() const override { return held_.alone(); }
-    /// "position" is that of the particle that rests at the point.
+    /// "position" is that of the particle with the given rest position.
     bool answer(std::string_view field, const Vec<3>& at, std::span<real> values) const override;
     std::vector<Integral> integrals() const override;
     real time() const override { return time_; }
@@ -49,21 +49,21 @@ private:
     real foam_of(real jacobian) const;
     real least_jacobian() const;
     real foam_cover() const;
-    /// Below the surface the grid has cells: it shows the water. With one cell along y it shows the surface.
+    /// With cells below the surface the grid shows the water; with one cell along y it shows the surface.
     bool shows_water() const { return box_.ny() > 1; }
 
     Box box_;
-    HeldPlanes held_;  // cut by cut_of_box
+    HeldPlanes held_;  // partitioned by cut_of_box
     std::unique_ptr<Model> model_;
     real level_, density_, g_, end_, time_ = 0;
     bool with_velocity_, gravity_, tension_;
-    std::optional<real> foam_below_;  // the Jacobian below which there is foam
+    std::optional<real> foam_below_;  // foam exists below this Jacobian
     Sheet sheet_;
     std::array<Values, 3> position_;  // of the surface's points [m]
     Values foam_;
     Values level_set_;             // of the water, where the grid shows it
     std::array<Values, 3> water_;  // its velocity
-    mutable bool brought_ = true;  // whether what whoever looks may read is here, and not this rank's planes alone
+    mutable bool brought_ = true;  // whether ghost planes, or all planes, are up to date
     Passes passes_;
 };
 

@@ -22,8 +22,8 @@ real Spectrum::of_wavenumber(real k) const {
     return of_frequency(frequency(by, k, depth)) * group_speed(by, k, depth);
 }
 
-/// Closed for two of the three; of JONSWAP by the midpoint rule over u = (wp/w)^4, in which its own tail is exp(-1.25 u): both ends are
-/// left out only where less than 1e-9 of the variance lies.
+/// Closed form for two of the three. For JONSWAP by the midpoint rule over u = (wp/w)^4, in which its tail is exp(-1.25 u): the omitted
+/// ends contain less than 1e-9 of the variance.
 real Spectrum::variance() const {
     if (kind == Kind::phillips) return 0.25 * alpha * length * length;
     const real plain = alpha * by.g * by.g / (5 * std::pow(peak, 4));
@@ -40,7 +40,7 @@ real Spectrum::variance() const {
 
 real Spectrum::peak_wavenumber() const { return wavenumber(by, peak, depth); }
 
-/// Written with the constants of its paper; exp(-0.74 (g/(w U))^4) = exp(-1.25 (wp/w)^4) where wp = (0.74/1.25)^(1/4) g/U.
+/// With the constants of the paper; exp(-0.74 (g/(w U))^4) = exp(-1.25 (wp/w)^4) for wp = (0.74/1.25)^(1/4) g/U.
 Spectrum pierson_moskowitz(const Restoring& by, real depth, real wind) {
     return {.kind = Spectrum::Kind::pierson_moskowitz,
             .by = by,

@@ -1,4 +1,4 @@
-// Spectra of wind seas, as densities of the variance of the surface height.
+// Spectra of wind seas, as densities of the variance of the surface elevation.
 //
 //     Pierson & Moskowitz 1964   S(w) = 8.1e-3 g^2 w^-5 exp(-0.74 (g / (w U))^4)          U at 19.5 m above the sea, a sea fully risen
 //     JONSWAP (Hasselmann 1973)  S(w) = a g^2 w^-5 exp(-1.25 (wp/w)^4) G^exp(-(w - wp)^2 / (2 s^2 wp^2))
@@ -19,15 +19,15 @@ struct Spectrum {
     Restoring by;
     real depth = infinity;
     real alpha = 0;   // level of the tail
-    real peak = 0;    // frequency of the peak [1/s]; of Phillips that of k = sqrt(2/3)/L
+    real peak = 0;    // peak frequency [1/s]; for Phillips that of k = sqrt(2/3)/L
     real gamma = 1;   // JONSWAP's G
     real length = 0;  // Phillips's L [m]
 
-    /// Variance a unit of frequency [m^2 s].
+    /// Variance per unit of frequency [m^2 s].
     real of_frequency(real omega) const;
-    /// Variance a unit of wavenumber, in all directions together [m^3].
+    /// Variance per unit of wavenumber, over all directions [m^3].
     real of_wavenumber(real k) const;
-    /// Variance of the whole sea [m^2]: the significant height is 4 times its root.
+    /// Variance of the sea [m^2]: the significant height is 4 times its root.
     real variance() const;
     real peak_wavenumber() const;
 };
@@ -36,7 +36,7 @@ Spectrum pierson_moskowitz(const Restoring& by, real depth, real wind);
 Spectrum jonswap(const Restoring& by, real depth, real wind, real fetch, real gamma);
 Spectrum phillips(const Restoring& by, real depth, real wind, real alpha);
 
-/// Density over angles from the wind's direction; its integral over a circle is 1 [1/rad].
+/// Directional spreading about the wind's direction; its integral over a circle is 1 [1/rad].
 class Spreading {
 public:
     explicit Spreading(real s);

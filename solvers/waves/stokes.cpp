@@ -8,7 +8,7 @@ namespace {
 
 using Powers = std::array<std::array<real, 5>, 5>;  // [power of e - 1][harmonic - 1]
 
-/// Depths beyond this are deep to the last bit: sech(2 k d) = 5e-16.
+/// Larger k d count as deep water, exact to the last bit: sech(2 k d) = 5e-16.
 constexpr real deep = 18;
 
 real pow_i(real x, int n) { return n == 0 ? 1 : x * pow_i(x, n - 1); }

@@ -1,5 +1,5 @@
-// A steady train by Stokes's expansion in e = k H/2 to the fifth order, with the coefficients of Fenton 1985 (J. Waterway, Port, Coastal,
-// Ocean Eng. 111, 216) for a mean Eulerian current of zero; with fewer terms, Stokes's waves of lower order.
+// A steady wave train by Stokes's expansion in e = k H/2 to fifth order, with the coefficients of Fenton 1985 (J. Waterway, Port, Coastal,
+// Ocean Eng. 111, 216) for zero mean Eulerian current; with fewer terms, Stokes waves of lower order.
 #pragma once
 #include "waves/model.hpp"
 

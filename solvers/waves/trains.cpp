@@ -56,7 +56,7 @@ void Trochoids::add(const Train& w, std::size_t number, real x, real y, real z, 
         angle += p.phase + kz * z;
         heading = {{p.kx / p.k, kz / p.k}};
         k = p.k, h = p.depth, a = std::min(a * p.growth, breaks_at * h);
-        const real rises = -shape_.bed.slope(x) * heading[0];  // the bed's, on the wave's way
+        const real rises = -shape_.bed.slope(x) * heading[0];  // slope of the bed in the wave's direction
         tilt = shape_.tilt * std::asin(rises / std::hypot(1.0, rises) * std::exp(-k * h));
     }
     a *= std::exp(k * y);
@@ -81,7 +81,7 @@ Motion Trochoids::motion(real x, real y, real z) const {
     return sum;
 }
 
-/// The particle that is at a place now: x0 <- X - D(x0), which draws together by the sum of the steepnesses at each turn.
+/// Finds the particle at a present position by the fixed-point iteration x0 <- X - D(x0), which contracts by the sum of the steepnesses.
 Vec<3> Trochoids::velocity(const Vec<3>& at) const {
     Vec<3> rest = at;
     rest[1] = std::min(rest[1], 0.0);

@@ -1,4 +1,4 @@
-// Trains of waves, each with its amplitude, wavelength, heading and phase.
+// Wave trains, each with its amplitude, wavelength, heading and phase.
 //
 //   Sines (Airy):         y = sum a cos(theta), theta = k . x - omega t + phase; the water below moves as linear theory says.
 //   Trochoids (Gerstner): x = x0 - sum (k/|k|) r sin(theta), y = y0 + sum r cos(theta), r = a e^(k y0): each particle goes round a circle.
@@ -40,13 +40,13 @@ public:
         Bed bed{};
         real lean = 0;     // [1/m]
         real flatten = 2;  // f
-        real tilt = 1;     // how far orbits follow the bed's slope
+        real tilt = 1;     // factor by which orbits follow the bed's slope
     };
     Trochoids(std::vector<Train> trains, real depth, Shape shape, const Restoring& by);
     void set_time(real t) override { t_ = t; }
     bool sideways() const override { return true; }
     Motion motion(real x, real z) const override { return motion(x, 0, z); }
-    /// Of a particle that rests below the surface, y < 0.
+    /// Of a particle with rest position below the surface, y < 0.
     Motion motion(real x, real y, real z) const;
     bool particle(const Vec<3>& rest, Motion& of) const override { return of = motion(rest[0], rest[1], rest[2]), true; }
     Vec<3> velocity(const Vec<3>& at) const override;
@@ -55,7 +55,7 @@ public:
 private:
     void add(const Train& w, std::size_t number, real x, real y, real z, Motion& sum) const;
     std::vector<Train> trains_;
-    std::vector<Shoaled> shoaled_;  // over a bed, one a train
+    std::vector<Shoaled> shoaled_;  // over a bed, one per train
     Shape shape_;
     real depth_, t_ = 0;
 };

@@ -61,7 +61,7 @@ std::vector<typename Transposition<T>::Block> Transposition<T>::blocks() {
     return list;
 }
 
-/// f(part of a column, its place in the block, length): a column after the other.
+/// f(part of a column, its index in the block, length), column by column.
 template <class T>
 template <class F>
 void Transposition<T>::each_part(const Block& block, const F& f) {
@@ -72,7 +72,7 @@ void Transposition<T>::each_part(const Block& block, const F& f) {
     });
 }
 
-/// To each rank goes the part of its rows in this rank's columns.
+/// Sends to each rank its rows of this rank's columns.
 template <class T>
 void Transposition<T>::transpose() {
     make_room();
@@ -93,7 +93,7 @@ void Transposition<T>::transpose_back() {
     for (const Block& block : list) each_part(block, [](T* part, const T* place, std::size_t length) { std::copy_n(place, length, part); });
 }
 
-/// Of column m this rank's rows: its own columns are here, those of others stand in blocks, in their order.
+/// This rank's rows of column m: own columns are stored here, those of other ranks are in blocks, in order.
 template <class T>
 T* Transposition<T>::own_rows_of(int m) {
     const PlaneRange rows = own_rows(), columns = own_columns();

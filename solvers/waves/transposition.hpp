@@ -1,6 +1,6 @@
-// Columns of coefficients, along z, and rows of a field, along x, that are transformed one after the other (FFTW): over ranks that share
-// the field's rows (OwnPlanes over them) each has its share of the columns too, and between the two directions the ranks transpose. A
-// field of one row is everybody's.
+// Parallel transposition between columns of coefficients (along z) and rows of a field (along x), which are transformed one after the other
+// (FFTW). Where ranks share the field's rows (OwnPlanes), each also has a share of the columns, and the ranks transpose between the two
+// transforms. A field of one row is replicated.
 #pragma once
 #include "core/parallel.hpp"
 #include "core/slabs.hpp"
@@ -20,17 +20,17 @@ struct FreeAligned {
 };
 template <class T>
 using Aligned = std::unique_ptr<T[], FreeAligned>;
-/// As FFTW wants memory; zero.
+/// Memory aligned for FFTW; zero.
 template <class T>
 Aligned<T> aligned(std::size_t count);
-/// A column or row of n entries is padded to whole cache lines, so that all are aligned as the one that was planned with.
+/// A column or row of n entries is padded to whole cache lines, so that all have the alignment used for planning.
 inline std::size_t padded(int n) { return (static_cast<std::size_t>(n) + 3) / 4 * 4; }
 
-/// Of how many columns each of so many ranks takes care.
+/// The partition of columns.
 inline Cut cut_of_columns(int columns, int ranks) { return cut_of(columns, ranks); }
-/// Whether each stores those alone: where ranks hold their own rows alone.
+/// Returns whether columns have distributed storage: where rows have.
 inline bool parts_columns(int rows) { return over_ranks() && detail::own_share.kept > 0 && rows > 1; }
-/// Which this rank stores.
+/// The columns that this rank stores.
 PlaneRange held_columns(int columns, int rows);
 
 /// T: real or Complex.
@@ -41,16 +41,17 @@ public:
 
     /// The entries of a stored column.
     T* column(int m) const { return columns_.get() + static_cast<std::size_t>(m - held_.begin) * length_; }
-    /// Those for which this rank is asked.
+    /// The columns that this rank transforms.
     PlaneRange own_columns() const { return transposes() ? columns_of(slabs().rank()) : PlaneRange{0, column_count_}; }
     PlaneRange own_rows() const { return transposes() ? rows_of(slabs().rank()) : PlaneRange{0, row_count_}; }
 
-    /// Own rows of all columns, from own columns of all rows: row_at(n) gets the entries of row n, and transform(n) follows.
+    /// Backward: own rows of all columns, from own columns of all rows. row_at(n) receives the entries of row n; then transform(n) is
+    /// called.
     template <class At, class F>
     void to_rows(const At& row_at, const F& transform) {
         if (transposes()) transpose();
         const PlaneRange own = own_rows();
-        constexpr int block = 8;  // rows that are gathered from the columns together
+        constexpr int block = 8;  // rows gathered from the columns at a time
         parallel_for(0, (own.end - own.begin + block - 1) / block, [&](int b) {
             const int first = own.begin + b * block, last = std::min(own.end, first + block);
             for (int m = 0; m < column_count_; ++m) {
@@ -60,7 +61,7 @@ public:
             for (int n = first; n < last; ++n) transform(n);
         });
     }
-    /// The way back: row_at(n) gives the entries of an own row.
+    /// Forward: row_at(n) returns the entries of an own row.
     template <class At>
     void to_columns(const At& row_at) {
         if (transposes()) make_room();
@@ -74,11 +75,11 @@ public:
     std::size_t bytes() const;
 
 private:
-    /// What is for one other rank: its rows of own columns, and own rows of its columns.
+    /// The message of one other rank: its rows of own columns, and own rows of its columns.
     struct Block {
         int peer;
         PlaneRange rows;
-        T *of_columns, *of_rows;  // where they stand in turned_ and in others_
+        T *of_columns, *of_rows;  // positions in turned_ and in others_
         std::size_t columns_bytes, rows_bytes;
     };
     bool transposes() const { return over_ranks() && row_count_ > 1; }
@@ -98,7 +99,7 @@ private:
     int column_count_, row_count_;
     PlaneRange held_;
     std::size_t length_;              // of a column
-    Cut by_column_;                   // over ranks: whose columns
+    Cut by_column_;                   // in parallel: the partition of columns
     std::vector<T> turned_, others_;  // a block for each other rank: of own columns, and of own rows
     Aligned<T> columns_;
 };

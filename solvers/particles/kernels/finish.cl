@@ -1,4 +1,4 @@
-/* Passes over velocities after the positions are final (Macklin & Mueller 2013, line 22): only those that the scene names exist. */
+/* Passes over velocities after the positions are final (Macklin & Mueller 2013, line 22): compiled only for effects of the scene. */
 #if defined(WEIR_XSPH) || defined(WEIR_VORTICITY)
 
 __kernel void load_velocities(int count, int stride, __global const double* v, __global const int* order, __global float4* velocities) {

@@ -17,9 +17,8 @@ WEIR_FN float heat_height(const float* x, int plane, __constant HeatWalls* w) {
     return heat_above(plane % 2 ? w->hi[axis] - x[axis] : x[axis] - w->lo[axis], w);
 }
 
-/* dh/dt of every particle. Beyond a wall stands the liquid's image: as warm as the liquid where no heat passes, as far from the wall's
-   temperature on the other side where the wall is held at one. Image m is behind the planes that the digits of m to base 3 name, one an
-   axis. */
+/* dh/dt of every particle. Beyond a wall lies the liquid's image: with equal theta at an insulated wall, mirrored about theta of a wall
+   of fixed temperature. Image m lies behind the planes named by the base-3 digits of m, one per axis. */
 __kernel void conduct(int count, int stride, __constant HeatParams* p, __constant HeatWalls* walls, __global const float4* at,
                       __global const int* neighbours, __global const int* list, __global double* to, __global double* by_walls) {
     const int i = get_global_id(0);
@@ -54,7 +53,7 @@ __kernel void conduct(int count, int stride, __constant HeatParams* p, __constan
         const float4 other = at[list[(size_t)k * stride + i]], d = APART(me, other);
         const float y[3] = {other.x, other.y, other.z};
         const float r2 = DISTANCE2(d, p), rise = other.w - me.w;
-        float flow = heat_flow(r2, rise, p); /* with those to images it is the same with the other sign at the other end, as each is */
+        float flow = heat_flow(r2, rise, p); /* antisymmetric, also for images, since each image has its counterpart */
         for (int m = 0; m < images; ++m) {
             float behind = r2;
             for (int a = 0, rest = near[m]; a < 3; ++a, rest /= 3)
@@ -84,7 +83,7 @@ __kernel void count_frozen(int count, __constant HeatStates* s, __global const d
     reduce_parts(0, sum, largests, sums, parts);
 }
 
-/* What is frozen does not move. */
+/* Frozen particles do not move. */
 __kernel void hold(int count, int stride, __constant HeatStates* s, __global const double* enthalpy, __global double* v) {
     const int i = get_global_id(0);
     if (i >= count || !is_frozen(enthalpy[i], s)) return;
@@ -135,7 +134,7 @@ __kernel void feed_heater(int count, int stride, int which, double each, __globa
 }
 #endif
 
-/* What of the flux of an area a particle takes, over its volume: over two spacings (Heat::weight). */
+/* A particle's share of the flux through an area, over its volume: over a distance of two spacings (Heat::weight). */
 WEIR_FN double flux_weight(double x, double plane, double sign, double spacing) {
     const double part = 1 - sign * (x - plane) / (2 * spacing);
     return part > 0 ? part / spacing : 0;
@@ -154,7 +153,7 @@ __kernel void feed_wall(int count, int stride, int axis, double plane, double si
     if (i < count) enthalpy[i] += each * flux_weight(x[(size_t)axis * stride + i], plane, sign, spacing);
 }
 
-/* What comes from outside through a wall (Heat::exchange), and how much that is for each particle [J/kg]. */
+/* Heat from outside through a wall (Heat::exchange), and its amount for each particle [J/kg]. */
 __kernel void exchange_at_wall(int count, int stride, __constant HeatStates* s, int axis, double plane, double sign, double spacing,
                                double coefficient, double outside, double part, __global const double* x, __global const double* shift,
                                __global double* enthalpy, __global double* given) {
@@ -172,7 +171,7 @@ __kernel void exchange_at_wall(int count, int stride, __constant HeatStates* s, 
     enthalpy[i] += given[i];
 }
 
-/* Densities that sorted particles are to have over the liquid's, where ice moves. */
+/* Rest densities of sorted particles relative to the liquid's, with moving ice. */
 __kernel void rests_of_ice(int count, __constant HeatStates* s, __global const int* order, __global const double* enthalpy,
                            __global float* rests) {
     const int k = get_global_id(0);

@@ -2,12 +2,12 @@
 
 #include "particles/kernels/heat_pair.inl"
 
-/* dh/dt of every particle; `positions` have theta as their fourth number. Beyond a wall stands the liquid's image: as warm as the liquid
-   where no heat passes, as far from the wall's temperature on the other side where the wall is held at one. */
+/* dh/dt of every particle; `positions` have theta as their fourth number. Beyond a wall lies the liquid's image: with equal theta at an
+   insulated wall, mirrored about theta of a wall of fixed temperature. */
 template <bool Density>
 WEIR_ALWAYS void heat_and(const HeatPass& a, const PbfPass* d, const ListChunk& chunk) {
     const single::HeatParams* p = a.p;
-    const float beyond = 1.0001f * p->h2; /* where a root of single precision, too, is over h: exactly nothing there */
+    const float beyond = 1.0001f * p->h2; /* beyond h also after rounding in single precision: exactly zero there */
     for (int s = chunk.begin; s < chunk.end; ++s) {
         const int first = s * lanes;
         const Four i = load(a.positions, first);
@@ -29,7 +29,7 @@ WEIR_ALWAYS void heat_and(const HeatPass& a, const PbfPass* d, const ListChunk& 
             const vf dx = i.x - j.x, dy = i.y - j.y, dz = i.z - j.z;
             const vf r2 = distance2(dx, dy, dz, p->guard), rise = j.w - i.w;
             if (Density) rho = pbf_add_density(rho, distance2(dx, dy, dz, d->p->guard), d->p);
-            vf flow = heat_flow(r2, rise, p); /* the sum with those to images is the same with the other sign at j, as each is */
+            vf flow = heat_flow(r2, rise, p); /* antisymmetric in i and j, also the sum with images */
             for (int m = 0; m < images.count; ++m) {
                 const HeatImages::Image& image = images.of[m];
                 const vf other[3] = {j.x, j.y, j.z};
@@ -55,5 +55,5 @@ WEIR_ALWAYS void heat_and(const HeatPass& a, const PbfPass* d, const ListChunk& 
 
 static void heat(const HeatPass& a, const ListChunk& chunk) { heat_and<false>(a, nullptr, chunk); }
 
-/* And the density of PBF (pbf_passes.inl) at the same places, to the bit: most of either is the way to a pair. */
+/* Combined with the density of PBF (pbf_passes.inl) at the same positions, bitwise equal: most of the cost is the access to pairs. */
 static void heat_and_density(const HeatPass& a, const PbfPass& d, const ListChunk& chunk) { heat_and<true>(a, &d, chunk); }

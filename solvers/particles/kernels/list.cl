@@ -1,5 +1,5 @@
-/* Sorted positions in single precision around the centre of the domain, and every particle's neighbours: entry k of particle i stands at
-   k * stride + i, so that consecutive work items read consecutive entries. */
+/* Sorted positions in single precision relative to the centre of the domain, and every particle's neighbours: entry k of particle i is
+   at k * stride + i, so that adjacent work items read adjacent entries. */
 
 __kernel void load_sorted(int count, int stride, __constant StateParams* s, __global const double* x, __global const int* order,
                           __global const int* cell, __global float4* sorted, __global int* sorted_cell) {
@@ -16,7 +16,8 @@ __kernel void load_sorted(int count, int stride, __constant StateParams* s, __gl
     sorted_cell[k] = cell[i];
 }
 
-/* Appends what is near `me` in the cells first .. last to the list of particle i, which has `found` so far. Nothing is written beyond `room`. */
+/* Appends the particles near `me` in the cells first .. last to the list of particle i, which has `found` entries. Writes at most
+   `room`. */
 WEIR_FN int append_near(int found, int i, float4 me, int4 first, int4 last, int stride, int room, float radius2, int4 cells,
                         __global const float4* sorted, __global const int* start, __global int* list) {
     first = max(first, (int4)(0));
@@ -36,8 +37,8 @@ WEIR_FN int append_near(int found, int i, float4 me, int4 first, int4 last, int 
     return found;
 }
 
-/* Where a particle has more neighbours than there is room for, `needed` says how many. Along axes that repeat, a particle's images look for
-   neighbours too. grid: origin of the cells, 1 / size. */
+/* Where a particle has more neighbours than the capacity, `needed` is their number. Along periodic axes the images of a particle also
+   search for neighbours. grid: origin of the cells, 1 / size. */
 __kernel void find_neighbours(int count, int stride, int room, float radius2, __constant StateParams* s, double4 grid, int4 cells,
                               __global const float4* sorted, __global const int* sorted_cell, __global const int* start,
                               __global int* neighbours, __global int* list, __global int* needed) {

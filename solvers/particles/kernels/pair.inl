@@ -6,7 +6,7 @@
 
 /* Square of the distance, and what keeps coincident particles finite: what the kernels here are functions of. */
 WEIR_FN REAL distance2(REAL dx, REAL dy, REAL dz, SCALAR guard) { return FMA(dz, dz, FMA(dy, dy, FMA(dx, dx, guard))); }
-/* Of the vectors a and b */
+/* Inner product of the vectors a and b */
 WEIR_FN REAL dot3(REAL ax, REAL ay, REAL az, REAL bx, REAL by, REAL bz) { return FMA(az, bz, FMA(ay, by, ax * bx)); }
 
 /* poly6: (h^2 - r^2)^3                                                                            Mueller et al. 2003, eq. 20 */
@@ -48,7 +48,7 @@ WEIR_FN REAL wendland_slope(REAL r2, SCALAR h) {
     return d * d * d;
 }
 
-/* How deep the kernel reaches into a wall at distance s, over its support: 0 where it does not. */
+/* Penetration of the kernel into a wall at distance s, relative to its support; 0 beyond it. */
 WEIR_FN REAL wall_depth(REAL s, SCALAR inv_h) { return MAX0(FNMA(s, inv_h, (SCALAR)1)); }
 
 /* A function of the distance s to a wall that vanishes beyond the support: u^2 sum_k c_k T_k(2 u - 1), u = 1 - s / h (Clenshaw 1955). */
@@ -65,8 +65,8 @@ WEIR_FN REAL wall_series(REAL s, WEIR_PARAM SCALAR* c, SCALAR inv_h) {
     return u * u * FMA(t, b1, c[0] - b2);
 }
 
-/* Along one axis: the part of the kernel that lies behind the two walls, and the gradient of that part along the axis. The gradient of
-   the part behind a wall points to the wall, as the gradient of the density of real particles there would. */
+/* Along one axis: the part of the kernel behind the two walls, and the gradient of that part along the axis. It points to the wall, as
+   the gradient of the density of real particles there would. */
 WEIR_FN REAL wall_part(REAL x, WEIR_PARAM WallParams* w, int axis) {
     return wall_series(x - w->lo[axis], w->fraction, w->inv_h) + wall_series(w->hi[axis] - x, w->fraction, w->inv_h);
 }
@@ -74,8 +74,8 @@ WEIR_FN REAL wall_pull(REAL x, WEIR_PARAM WallParams* w, int axis) {
     return wall_series(w->hi[axis] - x, w->slope, w->inv_h) - wall_series(x - w->lo[axis], w->slope, w->inv_h);
 }
 
-/* The same of the two walls, the upper one's less the lower one's: to which of them a particle is nearer. Nothing where how solids face
-   walls does not count. */
+/* The difference of the two walls' parts, upper minus lower: its sign gives the closer wall. Zero where the orientation of solids is
+   ignored. */
 WEIR_FN REAL wall_lean(REAL x, WEIR_PARAM WallParams* w, int axis) {
     return (wall_series(w->hi[axis] - x, w->fraction, w->inv_h) - wall_series(x - w->lo[axis], w->fraction, w->inv_h)) * w->facing;
 }
@@ -83,26 +83,26 @@ WEIR_FN REAL wall_steep(REAL x, WEIR_PARAM WallParams* w, int axis) {
     return (wall_series(w->hi[axis] - x, w->slope, w->inv_h) + wall_series(x - w->lo[axis], w->slope, w->inv_h)) * w->facing;
 }
 
-/* What the walls along one axis leave of what a solid covers. Two half-spaces share, of the product of their parts, twice as much where
-   they face the same way, as much where they stand at right angles, and nothing where they face each other, as a floor and a body close
-   above it do: 1 + cos of the angle between them. Exact for these three where the particle touches both. Without a lean: the product, however
-   they face.
+/* The fraction of a solid's part that the walls along one axis leave. Two half-spaces have a common part of the kernel. Relative to the
+   product of their parts it is twice as large for equal orientation, equal at right angles, and zero for opposite orientation, as for a
+   floor and a body close above it: 1 + cos of the angle between the normals. Exact for these three where the particle touches both.
+   Without lean: the product, for any orientation.
    way: the direction into the solid along the axis. */
 WEIR_FN REAL wall_leaves(REAL part, REAL lean, REAL way) { return MAX0((SCALAR)1 - part - way * lean); }
 /* One over the length of a solid's gradient */
 WEIR_FN REAL solid_way(const REAL* solid) {
     return RSQRT(dot3(solid[0], solid[1], solid[2], solid[0], solid[1], solid[2]) + (SCALAR)1e-30);
 }
-/* What all walls leave of it */
+/* The fraction that all walls leave */
 WEIR_FN REAL walls_leave(const REAL* part, const REAL* lean, const REAL* solid) {
     REAL way = solid_way(solid);
     return wall_leaves(part[0], lean[0], solid[0] * way) * wall_leaves(part[1], lean[1], solid[1] * way) *
            wall_leaves(part[2], lean[2], solid[2] * way);
 }
 
-/* What walls and solids add at one particle: out[3] is their part of the kernel, out[0..2] its gradient. Where several walls stand near,
-   parts combine as 1 - product (1 - part): exact for one plane; at edges and corners exact for kernels that are products of their
-   marginals. Of a solid what walls leave is added.
+/* Terms of walls and solids at one particle: out[3] is their part of the kernel, out[0..2] its gradient. The parts of several walls
+   combine as 1 - product (1 - part): exact for one plane; at edges and corners exact for kernels that are products of their marginals.
+   The fraction of a solid that walls leave is added.
    part, lean, pull, steep: of the walls along each axis. solid: gradient x, y, z and part of the solids. */
 WEIR_FN void walls_combined(const REAL* part, const REAL* lean, const REAL* pull, const REAL* steep, const REAL* solid, REAL* out) {
     REAL open_x = (SCALAR)1 - part[0], open_y = (SCALAR)1 - part[1], open_z = (SCALAR)1 - part[2], open_solid = (SCALAR)1 - solid[3];
@@ -110,7 +110,7 @@ WEIR_FN void walls_combined(const REAL* part, const REAL* lean, const REAL* pull
     REAL way = solid_way(solid), x = solid[0] * way, y = solid[1] * way, z = solid[2] * way;
     REAL left_x = wall_leaves(part[0], lean[0], x), left_y = wall_leaves(part[1], lean[1], y), left_z = wall_leaves(part[2], lean[2], z);
     REAL left = left_x * left_y * left_z;
-    /* the last term of each is 0 where a solid stands at right angles to the walls */
+    /* the last term of each is 0 where a solid is perpendicular to the walls */
     out[0] = pull[0] * open_y * open_z * open_solid + left * solid[0] +
              solid[3] * (pull[0] * (open_y * open_z - left_y * left_z) - x * steep[0] * left_y * left_z);
     out[1] = open_x * pull[1] * open_z * open_solid + left * solid[1] +

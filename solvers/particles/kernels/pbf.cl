@@ -1,7 +1,7 @@
 /* The passes of Position Based Fluids (Macklin & Mueller 2013): pbf_pair.inl over every particle's neighbours. Positions are float4 with
-   lambda as their fourth number; lambda reads A and writes B, correct reads B and writes A. */
+   lambda as their fourth number. The lambda pass reads A and writes B, the correction reads B and writes A. */
 
-/* What a particle's density is to be (pbf_passes.inl). */
+/* Rest density of a particle (pbf_passes.inl). */
 #ifdef WEIR_RESTS
 #define REST(k) rests[k]
 #else
@@ -9,7 +9,7 @@
 #endif
 
 #ifdef WEIR_KEEP
-/* B = A with what the iterations start from; factor: the kept part times dt^2. */
+/* B = A with the initial values of the iterations; factor: the kept fraction times dt^2. */
 __kernel void start_multipliers(int count, double factor, __global const int* order, __global const double* carried,
                                 __global const float4* a, __global float4* b, __global float* multiplier) {
     const int k = get_global_id(0);
@@ -90,7 +90,7 @@ __kernel void correct(int count, int stride, __constant StateParams* s, __consta
     to[i] = inside;
 }
 
-/* Density over rest density of a liquid at the final positions. */
+/* Density relative to rest density of a liquid at the final positions. */
 __kernel void densities(int count, int stride, __constant PbfParams* p, __constant WallParams* walls, __global const float4* terms,
                         __global const float* rests, __global const float4* at, __global const int* neighbours, __global const int* list, __global float* density) {
     const int i = get_global_id(0);

@@ -2,8 +2,8 @@
 
 #include "particles/kernels/pbf_pair.inl"
 
-/* What a particle's density is to be, which is that of what stands behind walls: 1 of a liquid, less of what boils. Its constraint is
-   rho_i - rest_i <= 0 over rho0, so that the pressure of both sides of a surface is one. */
+/* Rest density of a particle, which is also the density behind walls: 1 for a liquid, less during boiling. The constraint is rho_i -
+   rest_i <= 0, divided by rho0, so that the pressure is continuous across the surface between both. */
 static vf rest_of(const PbfPass& a, int first) { return a.rest ? load_numbers(a.rest, first) : broadcast(1); }
 
 /* Density and lambda of every particle: reads `from`, writes x, y, z, lambda to `to`. */
@@ -76,7 +76,7 @@ static void correct(const PbfPass& a, const ListChunk& chunk) {
     }
 }
 
-/* Density alone, of `from`. */
+/* Density only, of `from`. */
 static void density(const PbfPass& a, const ListChunk& chunk) {
     const single::PbfParams* p = a.p;
     for (int s = chunk.begin; s < chunk.end; ++s) {

@@ -1,6 +1,6 @@
-/* Compiles the pair physics as OpenCL C 1.2, one particle a work item. Defines from the host: WEIR_DIM, WEIR_KERNEL (0: Mueller's, 1:
-   cubic, 2: Wendland), WEIR_GROUP (work items of a group that reduces or scans), WEIR_FMA (the device has it), and one for each effect that
-   the scene names. */
+/* Compiles the pair physics as OpenCL C 1.2, one particle per work item. Defines from the host: WEIR_DIM, WEIR_KERNEL (0: Mueller's, 1:
+   cubic, 2: Wendland), WEIR_GROUP (work items of a group in reductions and scans), WEIR_FMA (hardware FMA), and one for each effect of
+   the scene. */
 #pragma OPENCL FP_CONTRACT OFF
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #define SCALAR float
@@ -14,7 +14,7 @@
 #ifdef WEIR_FMA
 #define FMA(a, b, c) fma((a), (b), (c))
 #define FNMA(a, b, c) fma(-(a), (b), (c))
-#else /* none in hardware: right, but not to the processor's last bit */
+#else /* without hardware FMA: correct, but not bitwise equal to the processor's results */
 #define FMA(a, b, c) ((a) * (b) + (c))
 #define FNMA(a, b, c) ((c) - (a) * (b))
 #endif
@@ -34,7 +34,7 @@ static inline float weir_max0(float x) { return x > 0.0f ? x : 0.0f; }
 #define WEIR_LAPLACIAN(r2, p) wendland_slope(r2, (p)->h)
 #endif
 
-/* From b to a; along axes that repeat (WEIR_PERIOD, as four numbers) to the nearest of its images. */
+/* Vector from b to a; along periodic axes (WEIR_PERIOD, as four numbers) to the nearest image. */
 #ifdef WEIR_PERIOD
 WEIR_FN float4 apart(float4 a, float4 b) {
     const float4 d = a - b;

@@ -1,10 +1,10 @@
-/* What solids add at the particles near them (density maps, Koschier & Bender 2017; particles/solid_terms.cpp): of each sorted particle the
-   gradient and the part of the kernel inside them. Only particles that start the step near a solid are looked at again. */
+/* Terms of solids at nearby particles (density maps, Koschier & Bender 2017; particles/solid_terms.cpp): for each sorted particle the
+   gradient and the part of the kernel inside them. Only particles that start the step near a solid are processed again. */
 WEIR_FN double4 world_of(float4 at, __constant StateParams* s) {
     return (double4)(at.x + s->centre[0], at.y + s->centre[1], WEIR_DIM == 3 ? at.z + s->centre[2] : 0, 0);
 }
 
-/* wall_series of pair.inl in double precision: what the threads have, to the last bit. */
+/* wall_series of pair.inl in double precision: bitwise equal to the threads. */
 WEIR_FN double solid_series(double s, __constant double* c, double inv_h) {
     const double u = fmax(1 - s * inv_h, 0.0), t = 2 * u - 1;
     double b1 = 0, b2 = 0;
@@ -38,7 +38,7 @@ __kernel void meet_solids(int count, __constant StateParams* s, __constant Solid
     terms[k] = close ? term_of_solids(x, s, series, poses) : (float4)(0);
 }
 
-/* After a correction: out of solids, and the terms there. */
+/* After a correction: moves particles out of solids and computes the terms there. */
 __kernel void leave_solids(int count, __constant StateParams* s, __constant SolidSeries* series, __global const SolidPose* poses,
                            __global uint* clamps, __global float4* at, __global const uchar* near_solid, __global float4* terms) {
     const int k = get_global_id(0);

@@ -1,5 +1,5 @@
-/* The solids of a scene as geometry/solids.cpp has them: solid_at_rest(k, x), the distance to solid k where the scene puts it, is made from
-   the scene; WEIR_SOLIDS is their number, and their poses say where they are. */
+/* The solids of a scene as in geometry/solids.cpp: solid_at_rest(k, x), the distance to solid k at its initial position, is generated
+   from the scene; WEIR_SOLIDS is their number, and their poses give their present positions. */
 WEIR_FN double4 place_in_rest(double4 world, __global const SolidPose* p) {
     const double4 centre = (double4)(p->centre[0], p->centre[1], p->centre[2], 0);
     const double4 y = world - (double4)(p->offset[0], p->offset[1], p->offset[2], 0) - centre;
@@ -27,7 +27,7 @@ WEIR_FN int nearest_solid(double4 x, __global const SolidPose* poses) {
     return best;
 }
 
-/* By central differences over +- eps. */
+/* Normal by central differences over +- eps. */
 WEIR_FN double4 solids_normal(double4 x, double eps, __global const SolidPose* poses) {
     const double4 dx = (double4)(eps, 0, 0, 0), dy = (double4)(0, eps, 0, 0);
     double4 n = (double4)(0);
@@ -44,7 +44,7 @@ WEIR_FN double4 solids_normal(double4 x, double eps, __global const SolidPose* p
     return length_of > 0 ? n / length_of : none;
 }
 
-/* x, or the nearest place at distance `margin` outside when x is closer than that. */
+/* x, or the closest point at distance `margin` outside when x is closer than that. */
 WEIR_FN double4 pushed_out(double4 x, double margin, double eps, __global const SolidPose* poses) {
     for (int newton = 0; newton < 2; ++newton) {
         const double d = solids_distance(x, poses);

@@ -1,5 +1,5 @@
-/* Particles sorted by cell: hash, counting sort, cell starts (Green 2010, section 5). Linear cell order, x fastest. Atomics place the particles
-   of a cell in any order; sort_cells restores theirs, so the order is the stable sort's of the processor's path, every time. */
+/* Particles sorted by cell: hash, counting sort, cell starts (Green 2010, section 5). Linear cell order, x fastest. Atomics place the
+   particles of a cell in any order; sort_cells restores it, so the order is always that of the processor's stable sort. */
 
 /* Cells as (origin, 1 / size) and their numbers along the axes. */
 __kernel void find_cells(int count, int stride, double4 grid, int4 cells, __global const double* x, __global int* cell,
@@ -16,7 +16,7 @@ __kernel void find_cells(int count, int stride, double4 grid, int4 cells, __glob
 
 #define SCAN_ITEMS 8
 
-/* Sum of `mine` over this item and those before it in the group. */
+/* Inclusive scan of `mine` within the group. */
 WEIR_FN int scan_group(int mine, __local int* sums) {
     const int l = get_local_id(0);
     sums[l] = mine;
@@ -30,7 +30,7 @@ WEIR_FN int scan_group(int mine, __local int* sums) {
     return sums[l];
 }
 
-/* Sums of all entries before each one, in three passes: within blocks, of the blocks, both together. */
+/* Exclusive scan of all entries, in three passes: within blocks, of the blocks, both together. */
 __kernel void scan_blocks(int count, __global const int* in, __global int* out, __global int* blocks) {
     __local int sums[WEIR_GROUP];
     const int first = get_global_id(0) * SCAN_ITEMS;
@@ -44,7 +44,7 @@ __kernel void scan_blocks(int count, __global const int* in, __global int* out, 
     }
     if (get_local_id(0) == WEIR_GROUP - 1) blocks[get_group_id(0)] = up_to_here;
 }
-/* One group. */
+/* A single group. */
 __kernel void scan_sums(int count, __global int* blocks) {
     __local int sums[WEIR_GROUP];
     const int l = get_local_id(0);
@@ -62,14 +62,14 @@ __kernel void scan_add(int count, __global int* out, __global const int* blocks)
     if (k < count) out[k] += blocks[k / (WEIR_GROUP * SCAN_ITEMS)];
 }
 
-/* Particles to the places of their cells; leaves the numbers of members at zero. */
+/* Moves particles to their cells; leaves the counters at zero. */
 __kernel void scatter(int count, __global const int* cell, __global const int* start, __global int* members, __global int* order) {
     const int i = get_global_id(0);
     if (i >= count) return;
     order[start[cell[i]] + atomic_dec(&members[cell[i]]) - 1] = i;
 }
 
-/* Heap sort (Williams 1964): however many particles pile up in a cell, n log n. */
+/* Heap sort (Williams 1964): n log n for any number of particles in a cell. */
 WEIR_FN void sift_down(__global int* list, int root, int count) {
     const int value = list[root];
     for (int child = 2 * root + 1; child < count; child = 2 * root + 1) {

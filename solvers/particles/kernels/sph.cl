@@ -1,7 +1,7 @@
-/* The passes of SPH (Mueller, Charypar & Gross 2003): sph_pair.inl over every particle's neighbours. Positions are float4 with 1 / rho as their
-   fourth number, velocities with pressure, or with the density's excess over rho0. Defines: WEIR_CONTINUITY (density by its rate; else it is
-   summed), WEIR_TAIT, WEIR_PULL (pressure may be negative), WEIR_WALL_FORCES, and the effects that the scene names: WEIR_DIFFUSION of density,
-   WEIR_ARTIFICIAL viscosity, WEIR_VISCOUS, WEIR_TENSION. */
+/* The passes of SPH (Mueller, Charypar & Gross 2003): sph_pair.inl over every particle's neighbours. Positions are float4 with 1 / rho
+   as their fourth number, velocities with pressure, or with the density's excess over rho0. Defines: WEIR_CONTINUITY (density by the
+   continuity equation; otherwise by summation), WEIR_TAIT, WEIR_PULL (pressure may be negative), WEIR_WALL_FORCES, and the effects of
+   the scene: WEIR_DIFFUSION of density, WEIR_ARTIFICIAL viscosity, WEIR_VISCOUS, WEIR_TENSION. */
 
 #ifndef WEIR_CONTINUITY
 /* rho_i = sum_j m W                                                                               Mueller et al. 2003, eq. 3 */
@@ -56,15 +56,15 @@ __kernel void find_pressures(int count, int stride, double2 state, double rest, 
     velocities[k] = velocity_of(i, stride, v, p);
 }
 
-/* All forces between particles and of walls, over mass. Of a density that is summed, between particles the gradient of the energy
-   sum_i m e(rho_i), e' = p / rho^2 (Monaghan 1992, eq. 3.3); else the form that goes with continuity. */
+/* Acceleration by all forces between particles and of walls. With density by summation the pair forces are the gradient of the energy
+   sum_i m e(rho_i), e' = p / rho^2 (Monaghan 1992, eq. 3.3); otherwise the form consistent with the continuity equation. */
 __kernel void sph_forces(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* terms,
                          __global const float4* at, __global const float4* velocities, __global const int* neighbours,
                          __global const int* list, __global float4* acceleration) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = at[i], u = velocities[i], w = walls_at(me, walls, terms, i);
-    const float own = (u.w + u.w) * me.w; /* walls push back with the particle's own pressure: no gradient through them */
+    const float own = (u.w + u.w) * me.w; /* walls have the particle's own pressure: no gradient through them */
     float ax = -own * w.x, ay = -own * w.y, az = -own * w.z;
 #ifdef WEIR_WALL_FORCES
     if (w.w > 0) {
@@ -102,7 +102,7 @@ __kernel void sph_forces(int count, int stride, __constant SphParams* p, __const
 }
 
 #ifdef WEIR_STICKY_SOLIDS
-/* A solid that is stuck to drags as a wall does: 2 nu plane / phi along its surface (Morris et al. 1997, sec. 3.2; sph_wall_force). */
+/* Drag of a no-slip solid, as of a wall: 2 nu plane / phi along its surface (Morris et al. 1997, sec. 3.2; sph_wall_force). */
 __kernel void drag_at_solids(int count, int stride, __constant StateParams* s, __constant SphParams* p, double drag2,
                              __global const SolidPose* poses, __global const float4* at, __global const uchar* near_solid,
                              __global const float4* terms, __global const int* order, __global const double* v,
@@ -111,7 +111,7 @@ __kernel void drag_at_solids(int count, int stride, __constant StateParams* s, _
     if (k >= count || !near_solid[k]) return;
     const double4 x = world_of(at[k], s);
     __global const SolidPose* solid = poses + nearest_solid(x, poses);
-    const double4 pull = (double4)(terms[k].x, terms[k].y, terms[k].z, 0); /* against the normal, as long as the integral over its plane */
+    const double4 pull = (double4)(terms[k].x, terms[k].y, terms[k].z, 0); /* opposite to the normal; its length is the integral over the plane */
     const double plane = norm_of(pull);
     if (solid->no_slip == 0 || plane == 0) return;
     const int i = order[k];
@@ -123,7 +123,7 @@ __kernel void drag_at_solids(int count, int stride, __constant StateParams* s, _
 #endif
 
 #ifdef WEIR_TENSION
-/* Normals of the surface, as sph_normal keeps them, and their squares. Liquid goes on behind walls. */
+/* Surface normals in the form of sph_normal, and their squares. Liquid is assumed behind walls. */
 __kernel void normals(int count, int stride, __constant SphParams* p, __constant WallParams* walls, __global const float4* terms,
                       __global const float4* at, __global const int* neighbours, __global const int* list, __global float4* normal) {
     const int i = get_global_id(0);
@@ -161,7 +161,7 @@ __kernel void tension(int count, int stride, __constant SphParams* p, double dt,
 }
 #endif
 
-/* The forces that the scene names, then v += dt a */
+/* The forces of the scene, then v += dt a */
 __kernel void kick(int count, int stride, __constant StateParams* s, double dt, double pull, __global const int* order,
                    __global const double* x, __global const float4* acceleration, __global double* v) {
     const int k = get_global_id(0);
@@ -187,7 +187,7 @@ __kernel void accelerations(int count, __global const float4* acceleration, __gl
 }
 
 #ifdef WEIR_CONTINUITY
-/* The new velocities and the density's excess, as the rate reads them. */
+/* The new velocities and the density's excess, for the density rate. */
 __kernel void load_excess(int count, int stride, double rho0, __global const float* rests, __global const int* order, __global const double* v,
                           __global const double* density, __global float4* velocities) {
     const int k = get_global_id(0);
@@ -198,8 +198,8 @@ __kernel void load_excess(int count, int stride, double rho0, __global const flo
     velocities[k] = velocity_of(order[k], stride, v, density[order[k]] - rho0);
 }
 
-/* d rho / dt = rate, from the new velocities and the old places (Colagrossi & Landrini 2003, eq. 10). Behind a wall the velocity's image moves
-   against the particle, as fast: the work of the wall's pressure is then what the particle's volume loses. */
+/* d rho / dt = rate, from the new velocities and the old positions (Colagrossi & Landrini 2003, eq. 10). The image velocity behind a
+   wall is opposite to the particle's: the work of the wall's pressure then equals the particle's loss of volume. */
 __kernel void advance_densities(int count, int stride, __constant StateParams* s, __global const SolidPose* poses,
                                 __global const uchar* near_solid, __constant SphParams* p, __constant WallParams* walls,
                                 __global const float4* terms, double dt, double rho0, __global const float4* at,
@@ -222,7 +222,7 @@ __kernel void advance_densities(int count, int stride, __constant StateParams* s
     const double rho = density[order[i]];
     float whole = rate / me.w + spread;
 #ifdef WEIR_MOVING_SOLIDS
-    if (near_solid[i]) { /* the images behind a solid that moves move with it */
+    if (near_solid[i]) { /* images behind a moving solid move with it */
         const double4 x = world_of(me, s);
         const double4 u_solid = solid_velocity(x, poses + nearest_solid(x, poses));
         whole -= (float)(2 * rho * dot_of(u_solid, (double4)(terms[i].x, terms[i].y, terms[i].z, 0)));
@@ -232,7 +232,7 @@ __kernel void advance_densities(int count, int stride, __constant StateParams* s
 }
 #endif
 
-/* x += dt v. What would enter a wall or a solid is put back and loses its speed into it. */
+/* x += dt v. A particle that would enter a wall or a solid is moved back and loses its normal velocity. */
 __kernel void drift(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, __global uint* clamps,
                     __global double* x, __global double* v) {
     const int i = get_global_id(0);

@@ -1,5 +1,5 @@
-/* Smoothed particle hydrodynamics (Mueller, Charypar & Gross 2003): what one pair contributes. See pair.inl for the language.
-   All pair terms are antisymmetric in i and j, so momentum is kept to round-off. */
+/* Smoothed particle hydrodynamics (Mueller, Charypar & Gross 2003): the contribution of one pair. See pair.inl for the language. All
+   pair terms are antisymmetric in i and j, so momentum is conserved to round-off. */
 
 /* sum + m W(r)                                                                                          Mueller et al. 2003, eq. 3 */
 WEIR_FN REAL sph_add_density(REAL sum, REAL r2, WEIR_PARAM SphParams* p) { return FMA(WEIR_DENSITY(r2, p), p->density, sum); }
@@ -16,7 +16,7 @@ WEIR_FN REAL sph_diffusion(REAL r2, REAL excess, REAL volume, WEIR_PARAM SphPara
     return -p->diffusion * p->gradient * WEIR_SLOPE(r2, p) * excess * volume;
 }
 
-/* By how much the liquid at rest is denser at j than at i */
+/* Difference of the hydrostatic densities at j and i */
 WEIR_FN REAL sph_layers(REAL dx, REAL dy, REAL dz, WEIR_PARAM SphParams* p) {
     return FMA(dz, p->layers[2], FMA(dy, p->layers[1], dx * p->layers[0]));
 }
@@ -41,11 +41,11 @@ WEIR_FN REAL sph_drag(REAL r2, REAL volumes, WEIR_PARAM SphParams* p) {
 /* Gradient of the colour, which is 1 in liquid and 0 outside: m / rho_j grad W = factor (x_i - x_j)          Mueller et al. 2003, eq. 15 */
 WEIR_FN REAL sph_colour(REAL r2, REAL volume, WEIR_PARAM SphParams* p) { return p->gradient * WEIR_SLOPE(r2, p) * volume; }
 
-/* Surface tension as the stress sigma k (|n| 1 - n n / |n|) of the colour's gradient n (Lafaurie et al. 1994, in SPH Hu & Adams 2006):
-   unlike sigma kappa n a force between pairs, equal and opposite. Stress that pulls makes particles clump where the pull between two falls
-   with their distance (Swegle, Hicks & Attaway 1995), so it is taken to the pairs by a slope of its own, 1 - (r/h)^4, whose pull grows up
-   to r = 0.67 h. k (sph/options.cpp) makes up for what a surface cuts off n and off that slope. The normal is kept as q = n / sqrt |n|, so
-   the stress on x is sigma k (q.q x - q q.x). */
+/* Surface tension as the stress sigma k (|n| 1 - n n / |n|) of the colour gradient n (Lafaurie et al. 1994, in SPH Hu & Adams 2006):
+   unlike sigma kappa n it is a pair force, equal and opposite. Tensile stress makes particles clump where the attraction decreases with
+   distance (Swegle, Hicks & Attaway 1995). The pair sum therefore uses a slope of its own, 1 - (r/h)^4, whose force increases up to r =
+   0.67 h. k (sph/options.cpp) compensates the part of n and of that slope that a surface cuts off. The normal is stored as q = n / sqrt
+   |n|, so the stress on x is sigma k (q.q x - q q.x). */
 WEIR_FN REAL sph_normal(REAL length2, WEIR_PARAM SphParams* p) {
     REAL per_length = RSQRT(length2 + p->noise * p->noise * (SCALAR)1e-6);
     REAL length = length2 * per_length;
@@ -54,11 +54,11 @@ WEIR_FN REAL sph_normal(REAL length2, WEIR_PARAM SphParams* p) {
 }
 WEIR_FN REAL sph_tension(REAL r2, REAL volumes, WEIR_PARAM SphParams* p) { return -p->tension * volumes * MAX0(p->h2 - r2) * (p->h2 + r2); }
 
-/* What walls add to the acceleration beside the particle's own pressure (which has no gradient through them):
-   - the pressure goes on behind a wall as p_i + rho0 g.(x - x_i) (Adami, Hu & Adams 2012, eq. 27); the first moment of grad W over what
-     lies behind a plane at distance s is its part along the plane, part + s plane across. It fades where the liquid is less than one
-     spacing deep, so that a drop on a wall falls;
-   - a wall that is stuck to drags with 2 nu plane / s (v_wall - v_i): velocity goes on behind it linearly (Morris et al. 1997, sec. 3.2).
+/* Acceleration by walls besides the particle's own pressure (which has no gradient through them):
+    - the pressure behind a wall is extrapolated as p_i + rho0 g.(x - x_i) (Adami, Hu & Adams 2012, eq. 27); the first moment of grad W
+      over the region behind a plane at distance s is its part along the plane, part + s plane across. The term vanishes where the liquid
+      is less than one spacing deep, so that a drop on a wall falls;
+    - drag of a no-slip wall, 2 nu plane / s (v_wall - v_i): the velocity is extrapolated linearly behind it (Morris et al. 1997, sec. 3.2).
    part: of the kernel behind all walls. */
 WEIR_FN void sph_wall_force(const REAL* x, const REAL* v, REAL pressure, REAL part, WEIR_PARAM WallParams* w, WEIR_PARAM SphParams* p,
                             REAL* out) {

@@ -20,8 +20,8 @@ static void sph_densities(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
-/* The rate of density of every particle, from `velocities` (whose fourth number is the excess rho - rho0). Behind a wall the velocity's
-   image moves against the particle, as fast: the work of the wall's pressure is then what the particle's volume loses. */
+/* The density rate of every particle, from `velocities` (whose fourth number is the excess rho - rho0). The image velocity behind a wall
+   is opposite to the particle's: the work of the wall's pressure then equals the particle's loss of volume. */
 template <bool Diffusion>
 static void sph_rates(const SphPass& a, const ListChunk& chunk) {
     const single::SphParams* p = a.p;
@@ -42,8 +42,8 @@ static void sph_rates(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
-/* All forces that the scene names. Summed: of a density that is summed, between particles the gradient of the energy sum_i m e(rho_i),
-   e' = p / rho^2 (Monaghan 1992, eq. 3.3); else the form that goes with continuity. */
+/* All forces of the scene. Summed: with density by summation the pair forces are the gradient of the energy sum_i m e(rho_i), e' = p /
+   rho^2 (Monaghan 1992, eq. 3.3); otherwise the form consistent with the continuity equation. */
 template <unsigned Terms>
 static void sph_forces(const SphPass& a, const ListChunk& chunk) {
     constexpr bool summed = (Terms & sph_summed) != 0, artificial = (Terms & sph_artificial) != 0, viscous = (Terms & sph_viscous) != 0;
@@ -51,7 +51,7 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
     for (int s = chunk.begin; s < chunk.end; ++s) {
         const int first = s * lanes;
         const Four i = load(a.positions, first), u = load(a.velocities, first);
-        /* walls push back with the particle's own pressure: no gradient through them */
+        /* walls have the particle's own pressure: no gradient through them */
         const Four w = walls_at(i, a.walls, a.solid, first);
         const vf own = (u.w + u.w) * i.w;
         vf ax = -own * w.x, ay = -own * w.y, az = -own * w.z;
@@ -82,7 +82,7 @@ static void sph_forces(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
-/* Normals of the surface, as sph_normal keeps them, to `acceleration`. Liquid goes on behind walls. */
+/* Surface normals in the form of sph_normal, written to `acceleration`. Liquid is assumed behind walls. */
 static void sph_normals(const SphPass& a, const ListChunk& chunk) {
     const single::SphParams* p = a.p;
     for (int s = chunk.begin; s < chunk.end; ++s) {
@@ -104,7 +104,7 @@ static void sph_normals(const SphPass& a, const ListChunk& chunk) {
     }
 }
 
-/* Acceleration by surface tension: `velocities` holds the normals. */
+/* Acceleration by surface tension: `velocities` contains the normals. */
 static void sph_tensions(const SphPass& a, const ListChunk& chunk) {
     const single::SphParams* p = a.p;
     for (int s = chunk.begin; s < chunk.end; ++s) {

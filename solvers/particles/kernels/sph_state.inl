@@ -1,10 +1,10 @@
-/* What continuity does to a density in one step, in double precision on every backend. Plain C; WEIR_FN as in pair.inl. */
+/* Density update by the continuity equation, in double precision on every backend. Plain C; WEIR_FN as in pair.inl. */
 
-/* Far beyond what any equation of state here means; where particles are thrown faster than sound, densities must not run away. */
+/* Far beyond the range of any equation of state used here: bounds densities where particles are faster than sound. */
 #define WEIR_MOST_COMPRESSION 8.0
 
-/* exp(x) to second order, always positive: growth(x) growth(-x) = 1, so that what expands and shrinks again is what it was.
-   A step in which density would change by more than a factor e is not resolved: it is held back, and stays finite. */
+/* exp(x) to second order, always positive: growth(x) growth(-x) = 1, so expansion and compression are reversible. A step in which
+   density would change by more than a factor e is not resolved: the change is limited, and stays finite. */
 WEIR_FN double density_growth(double x) {
     double u = x < 0 ? -x : x, grown;
     u = u < 1 ? u : 1;

@@ -1,13 +1,13 @@
-/* Passes over the state: double precision, one array an axis (axis a of particle i stands at a * stride + i). The cell of a
-   particle is the one that the processor's path finds. */
+/* Passes over the state: double precision, one array per axis (axis a of particle i is at a * stride + i). The cell of a particle is the
+   same as on the processor's path. */
 
-/* The nearest place inside the walls; what is not a number stays so, and is found. */
+/* The closest point inside the walls; NaN is kept and detected later. */
 WEIR_FN double kept_inside(double x, __constant StateParams* s, int axis) {
     double above = x < s->keep_lo[axis] ? s->keep_lo[axis] : x;
     return s->keep_hi[axis] < above ? s->keep_hi[axis] : above;
 }
 
-/* The nearest place inside the walls and outside the solids. */
+/* The closest point inside the walls and outside the solids. */
 WEIR_FN void keep(double* x, __constant StateParams* s, __global const SolidPose* poses) {
 #ifdef WEIR_SOLIDS
     const double4 y = pushed_out((double4)(x[0], x[1], WEIR_DIM == 3 ? x[2] : 0, 0), s->margin, s->feel, poses);
@@ -16,8 +16,8 @@ WEIR_FN void keep(double* x, __constant StateParams* s, __global const SolidPose
     for (int a = 0; a < WEIR_DIM; ++a) x[a] = kept_inside(x[a], s, a);
 }
 
-/* The same; clamps: how often it put something back by more than rounding, and the largest distance [m] as the bits of a float, which are
-   ordered as floats are that are not negative. */
+/* The same; clamps: number of boundary corrections larger than rounding, and the largest distance [m] as the bits of a float, which are
+   ordered like nonnegative floats. */
 WEIR_FN void count_clamp(double by2, __constant StateParams* s, __global uint* clamps) {
     if (!(by2 > s->least_back * s->least_back)) return;
     atomic_inc(clamps);
@@ -31,7 +31,7 @@ WEIR_FN void keep_and_count(double* x, __constant StateParams* s, __global const
     count_clamp(by2, s, clamps);
 }
 
-/* The forces that the scene names: v + dt f. pull: dt omega^2 */
+/* The forces of the scene: v + dt f. pull: dt omega^2 */
 WEIR_FN double forced(double u, double x, double dt, double pull, __constant StateParams* s, int axis) {
 #ifdef WEIR_GRAVITY
     u += dt * s->gravity[axis];
@@ -57,7 +57,7 @@ __kernel void predict(int count, int stride, __constant StateParams* s, __global
     for (int a = 0; a < WEIR_DIM; ++a) x_star[(size_t)a * stride + i] = y[a];
 }
 
-/* The box of all particles: of each group, lo and hi of every axis. A coordinate that is not finite makes its axis infinite. */
+/* The box of all particles: per group, lo and hi of every axis. A coordinate that is not finite makes its axis infinite. */
 __kernel void range(int count, int stride, __global const double* x, __global double* parts) {
     __local double lo[WEIR_GROUP], hi[WEIR_GROUP];
     const int l = get_local_id(0);
@@ -86,10 +86,10 @@ __kernel void range(int count, int stride, __global const double* x, __global do
     }
 }
 
-/* What is not a number stays so. */
+/* NaN is kept. */
 WEIR_FN double larger(double a, double b) { return a > b || isnan(a) ? a : b; }
 
-/* Of each group: the largest value, its sum. Every item adds its own particles in the same order each time, so sums repeat to the bit. */
+/* Per group: the largest value and the sum. Every item adds its own particles in the same order each time: sums are bitwise repeatable. */
 WEIR_FN void reduce_parts(double largest, double sum, __local double* largests, __local double* sums, __global double* parts) {
     const int l = get_local_id(0);
     largests[l] = largest;
@@ -107,7 +107,7 @@ WEIR_FN void reduce_parts(double largest, double sum, __local double* largests, 
     }
 }
 
-/* Squares of speeds. 0 x makes a position that is not finite turn the speed into NaN: one sweep finds both. */
+/* Squared speeds. 0 x turns a position that is not finite into a NaN speed: one pass finds both. */
 __kernel void speeds(int count, int stride, __global const double* x, __global const double* v, __global double* parts) {
     __local double largests[WEIR_GROUP], sums[WEIR_GROUP];
     double largest = 0;
@@ -140,7 +140,7 @@ __kernel void compressions(int count, double rest, __global const int* order, __
 }
 
 #ifdef WEIR_PERIOD
-/* Back into the period. */
+/* Wraps into the period. */
 __kernel void wrap(int count, int stride, __constant StateParams* s, __global double* x) {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -153,7 +153,7 @@ __kernel void wrap(int count, int stride, __constant StateParams* s, __global do
 #endif
 
 #ifdef WEIR_OPEN
-/* 1 for what stays: what has not left through an open side. */
+/* 1 for remaining particles: those not beyond an open side. */
 __kernel void find_what_stays(int count, int stride, __constant StateParams* s, __global const double* x, __global int* stays) {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -167,7 +167,7 @@ __kernel void find_what_stays(int count, int stride, __constant StateParams* s, 
 #endif
 
 #ifdef WEIR_SINKS
-/* 1 for what is in no sink. */
+/* 1 for particles outside sinks. */
 __kernel void find_what_is_in_no_sink(int count, int stride, __constant StateParams* s, __global const double* x, __global int* stays) {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -177,7 +177,7 @@ __kernel void find_what_is_in_no_sink(int count, int stride, __constant StatePar
 #endif
 
 #if defined(WEIR_OPEN) || defined(WEIR_SINKS)
-/* The stayers' numbers, in their order; `before`: how many stay before each particle. */
+/* Compacts the remaining particles, in their order; `before`: number of remaining particles before each one. */
 __kernel void list_stayers(int count, __global const int* stays, __global const int* before, __global int* order) {
     const int i = get_global_id(0);
     if (i < count && stays[i]) order[before[i]] = i;

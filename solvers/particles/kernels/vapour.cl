@@ -1,10 +1,10 @@
-/* Boiling: how deep particles stand below the matter above them, and what density they are to have. */
+/* Boiling: depths of particles below the matter above them, and their rest densities. */
 
 WEIR_FN void place_at(int i, int stride, __global const double* x, double* y) {
     for (int a = 0; a < 3; ++a) y[a] = a < WEIR_DIM ? x[(size_t)a * stride + i] : 0;
 }
 
-/* Particles by column and row, one entry late: so that their sums from the top leave above each row what is above it. */
+/* Counts particles by column and row, shifted by one entry: the scan from the top then gives the number above each row. */
 __kernel void count_in_columns(int count, int stride, __constant VapourParams* p, __global const double* x, __global int* above) {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -30,7 +30,7 @@ __kernel void find_shifts(int count, int stride, __constant VapourParams* p, __g
     shift[i] = vapour_shift(vapour_depth(below, row, above[at], above[at + 1] - above[at], p), p);
 }
 
-/* Of sorted particles: the density that each is to have, over the liquid's. */
+/* Rest densities of sorted particles, relative to the liquid's. */
 __kernel void find_rests(int count, __constant VapourParams* p, __constant HeatStates* s, __global const int* order,
                          __global const double* enthalpy, __global const double* shift, __global float* rest) {
     const int k = get_global_id(0);

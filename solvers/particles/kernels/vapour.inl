@@ -7,12 +7,12 @@ WEIR_FN double vapour_place(double x, int axis, WEIR_PARAM VapourParams* p) {
 }
 WEIR_FN int vapour_cell(double place, int cells) { return (int)place < cells ? (int)place : cells - 1; }
 
-/* In rows, from the top. */
+/* Depth in rows, from the top. */
 WEIR_FN double vapour_below(const double* x, WEIR_PARAM VapourParams* p) {
     double at = vapour_place(x[p->axis], p->axis, p);
     return p->falls ? at : p->cells[p->axis] - at;
 }
-/* Where the rows of a particle's column begin; each column has one more entry than rows. */
+/* First entry of the rows of a particle's column; each column has one entry more than rows. */
 WEIR_FN int vapour_column(const double* x, WEIR_PARAM VapourParams* p) {
     int a, column = 0;
     for (a = 0; a < 3; ++a)
@@ -20,7 +20,7 @@ WEIR_FN int vapour_column(const double* x, WEIR_PARAM VapourParams* p) {
     return column * (p->cells[p->axis] + 1);
 }
 
-/* before: particles in the rows above that of the particle; own: in its row. */
+/* before: particles in the rows above the particle's; own: in its row. */
 WEIR_FN double vapour_depth(double below, int row, int before, int own, WEIR_PARAM VapourParams* p) {
     return p->depth_of_one * (before + (below - row) * own);
 }
@@ -30,7 +30,7 @@ WEIR_FN double vapour_shift(double depth, WEIR_PARAM VapourParams* p) {
     return at < WEIR_SHIFT_PIECES ? p->shift[i] + (at - i) * (p->shift[i + 1] - p->shift[i]) : p->shift[WEIR_SHIFT_PIECES];
 }
 
-/* The density of liquid and vapour together, by their volumes, over that of the liquid. */
+/* Mean density of liquid and vapour, by their volumes, relative to the liquid's. */
 WEIR_FN double vapour_rest(double h, double shift, WEIR_PARAM HeatStates* s, WEIR_PARAM VapourParams* p) {
     return 1 / (1 + heat_vapour(h, shift, s) * (p->expansion - 1));
 }
