@@ -50,7 +50,7 @@ std::string claims_table(const CaseResult& result) {
         for (const Verdict& verdict : v.verdicts) all.push_back(&verdict), width = std::max(width, claim_of(verdict).size());
     std::string s =
         fmt::format("{} ({}, {}): {}\n", result.plan.name, name(result.plan.kind), name(result.plan.size), result.plan.question);
-    s += fmt::format("         {:{}}  {:>11}  {:22}  {:>8}  {}\n", "claim", width, "measured", "bound", "seconds", "why");
+    s += fmt::format("         {:{}}  {:>11}  {:22}  {:>8}  {}\n", "claim", width, "measured", "bound", "seconds", "rationale");
     for (const Verdict* v : all) {
         s += fmt::format("  {:5}  {:{}}  {:>11.4g}  {:22}  {:>8.2f}  {}\n", v->word(), claim_of(*v), width, v->measured, v->bound(),
                          v->seconds, v->why);
