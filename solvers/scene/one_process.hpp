@@ -1,4 +1,4 @@
-// What solvers do not share among ranks, refused by its key and in the same words whoever refuses it.
+// Rejects keys that are not supported in parallel, with the same message for all solvers.
 #pragma once
 #include "scene/scene.hpp"
 
@@ -6,7 +6,7 @@
 
 namespace weir::scene {
 
-/// One line of what a solver cannot do over ranks: "effects.hand: the hand pushes in one process only".
+/// The message about a key that is not supported in parallel: "effects.hand: the hand pushes in one process only".
 [[noreturn]] inline void one_process_only(const Scene& scene, const std::string& key, const std::string& what) {
     scene.refuse(key, key + ": " + what + " in one process only");
 }
