@@ -196,8 +196,7 @@ void Reconstruction::lay_samples(const Extent& all) {
     const real step = options_.cell * cloud_.spacing;
     if (domain_.flat) samples_.spacing[0] = step, lay_plane();
     for (std::size_t a = 0; a < (domain_.flat ? 2U : 3U); ++a) {
-        const real beyond =
-            1.5 * cloud_.spacing;  // bound of the distance from the surface to the nearest particle: half a spacing for a plane
+        const real beyond = 1.5 * cloud_.spacing;  // bound of the distance from surface to particles: half a spacing for a plane
         const real lo = domain_.lo[a], hi = domain_.hi[a];
         const auto number = [&](real x) { return std::floor((x - lo) / step - 0.5); };
         const real first = number(std::max(lo, all.least[a] - beyond));

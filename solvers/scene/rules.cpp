@@ -20,7 +20,7 @@ Domain domain_of(const Table& root) {
     return domain;
 }
 
-/// Cells are indexed by int. The memory limit is checked elsewhere, because it depends on the solver (sim/foretold.hpp).
+/// Cells are indexed by int. The memory limit is checked elsewhere, because it depends on the solver (sim::require_memory).
 void check_cells(const Table& root, const Report& report) {
     constexpr double most = std::numeric_limits<std::int32_t>::max();
     if (!root.has("grid.cells")) return;

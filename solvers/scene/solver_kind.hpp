@@ -25,7 +25,7 @@ struct PlainStep {
     std::string scene{};  // additional keys of a small scene of this kind, as TOML; "<x>" stands for a list of x for each axis
 };
 
-/// What is distributed over ranks: the planes of the slowest axis, or the particles in equal parts in the order of their cells.
+/// What is distributed among ranks: the planes of the slowest axis, or the particles in equal parts in the order of their cells.
 enum class Shared { by_planes, by_particles };
 
 struct SolverKind {
