@@ -1,4 +1,4 @@
-// The device seam over OpenCL 1.2: one in-order queue with profiling, one program, kernels by name.
+// The device interface over OpenCL 1.2: one in-order queue with profiling, one program, kernels by name.
 #include "backend/device.hpp"
 #include "core/error.hpp"
 
@@ -239,7 +239,7 @@ void OpenClDevice::launch(std::string_view name, std::size_t items, std::size_t 
     launched_.push_back({event, at});
 }
 
-/// Adds up the times of launches that have ended.
+/// Adds the times of finished launches.
 void OpenClDevice::collect() {
     for (const Launched& l : launched_) {
         cl_ulong begin = 0, end = 0;

@@ -1,4 +1,4 @@
-// In place of opencl.cpp where weir is built without OpenCL.
+// Replaces opencl.cpp where weir is built without OpenCL.
 #include "backend/device.hpp"
 #include "core/error.hpp"
 

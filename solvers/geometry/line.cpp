@@ -7,7 +7,7 @@ namespace weir::geometry {
 
 namespace {
 
-/// Between a point inside and one outside: the last place inside, to the last bit.
+/// Bisects between a point inside and one outside: the last point inside, to the last bit.
 template <int D>
 real end_of(const Shape<D>& shape, const Line<D>& line, real in, real out) {
     for (;;) {
@@ -36,7 +36,7 @@ void find_in_convex(const Shape<D>& shape, const Line<D>& line, std::vector<Inte
     for (;;) {
         if (at_c < 0) return inside.push_back(around(shape, line, c));
         if (at_d < 0) return inside.push_back(around(shape, line, d));
-        // No point of [a, b] is nearer than this; nor is there any between them any more.
+        // lower bound of the distance in [a, b] is positive, or the interval cannot be divided further
         if (std::min(at_c, at_d) > shape.steepest() * (b - a) || !(a < c && c < d && d < b)) return;
         if (at_c < at_d) {
             b = d, d = c, at_d = at_c;

@@ -1,6 +1,7 @@
-// Where a line lies inside a shape: intervals, exact to the last bit. Along a line the signed distance of a convex shape is convex, so its
-// least is found by golden sections (Kiefer 1953) however thin the shape is, and both ends by bisection from there. Unions and differences
-// are those of intervals. Of other shapes (meshes) the line is walked by the distance itself (Hart 1996), at least by a 4096th of it.
+// Intersection of a line with a shape: intervals, exact to the last bit. Along a line the signed distance of a convex shape is convex: its
+// minimum is found by golden-section search (Kiefer 1953), for any thickness of the shape, and both ends by bisection from there. Unions
+// and differences use interval operations. For other shapes (meshes) the line is sphere-traced (Hart 1996), with steps of at least a 4096th
+// of it.
 #pragma once
 #include "geometry/motion.hpp"
 #include "geometry/shape.hpp"
@@ -13,7 +14,7 @@ struct Interval {
     real low = 0, high = 0;
 };
 
-/// The points with one coordinate from `low` to `high` and the others of x, at a pose of the shape.
+/// The line through x along one coordinate from `low` to `high`, in a pose of the shape.
 template <int D>
 struct Line {
     Vec<D> x{};
@@ -27,7 +28,7 @@ struct Line {
     }
 };
 
-/// What of it is inside, from low to high; intervals that touch are one.
+/// The part inside, from low to high; touching intervals are merged.
 template <int D>
 void find_inside(const Shape<D>& shape, const Line<D>& line, std::vector<Interval>& inside);
 

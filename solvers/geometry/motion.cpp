@@ -65,7 +65,7 @@ Motion<D> Motion<D>::keyframed(std::vector<Keyframe<D>> frames, const Vec<D>& ce
     return m;
 }
 
-/// Rodrigues' rotation by `angle` about the axis through the centre, turning at `rate`.
+/// Rodrigues' rotation by `angle` about the axis through the centre, with angular velocity `rate`.
 template <int D>
 Pose<D> Motion<D>::turned(real angle, real rate) const {
     Pose<D> pose;

@@ -1,4 +1,4 @@
-// Prescribed rigid motion of solids: where a solid is at a time, and how fast each of its points moves.
+// Prescribed rigid motion of solids: pose and velocity field as functions of time.
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
@@ -29,7 +29,7 @@ struct Pose {
     Vec<D> velocity_at(const Vec<D>& world) const;
 };
 
-/// One key frame: at time t the solid is moved by `offset` and turned by `angle`; linear in between, at rest outside the frames.
+/// One key frame: at time t the solid is translated by `offset` and rotated by `angle`; linear in between, at rest outside the frames.
 template <int D>
 struct Keyframe {
     real t = 0;
@@ -44,12 +44,12 @@ public:
 
     Motion() = default;
     static Motion constant(const Vec<D>& velocity);
-    /// offset(t) = amplitude (sin(2π frequency t + phase) − sin(phase)); starts where the scene puts the solid.
+    /// offset(t) = amplitude (sin(2π frequency t + phase) − sin(phase)); starts at the scene's position.
     static Motion sinusoidal(const Vec<D>& amplitude, real frequency, real phase);
-    /// Turns about `centre` (3D: about `axis` through it) at `rate` [rad/s].
+    /// Rotates about `centre` (3D: about `axis` through it) at `rate` [rad/s].
     static Motion rotating(const Vec<D>& centre, const std::array<real, 3>& axis, real rate);
     static Motion keyframed(std::vector<Keyframe<D>> frames, const Vec<D>& centre, const std::array<real, 3>& axis);
-    /// From a scene's table { kind = "sinusoidal", ... }; `shape_centre` is where it turns about if the table names no centre.
+    /// From a scene's table { kind = "sinusoidal", ... }; `shape_centre` is the default centre of rotation.
     static Motion make(const scene::Table& table, const Vec<D>& shape_centre);
 
     bool moves() const { return kind_ != Kind::none; }

@@ -16,7 +16,7 @@ std::string code(const Vec<D>& x) {
     return "(double4)(" + hex_number(x[0]) + ", " + hex_number(x[1]) + ", " + hex_number(D == 3 ? x[D - 1] : 0) + ", 0)";
 }
 std::string code(real x) { return hex_number(x); }
-/// A call of a function of the place x.
+/// The text of a function call with the position x.
 template <class... Arguments>
 std::string call(const std::string& function, const Arguments&... arguments) {
     return function + "(x" + ((", " + code(arguments)) + ...) + ")";
@@ -61,7 +61,7 @@ struct Plane final : Shape<D> {
     std::string code() const override { return call("shape_plane", point, n); }
 };
 
-/// Vertical distance times the cosine of the local slope: exact where the surface is flat, off by (slope x curvature) near it.
+/// Vertical distance times the cosine of the local slope: exact where the surface is flat, with an error of (slope x curvature) near it.
 template <int D>
 struct Wave final : Shape<D> {
     real level, amplitude, k;
@@ -70,7 +70,7 @@ struct Wave final : Shape<D> {
         const real slope = amplitude * k * std::sin(k * x[0]);
         return (x[1] - level - amplitude * std::cos(k * x[0])) / std::sqrt(1 + slope * slope);
     }
-    real steepest() const override { return 2; }  // within a tenth of 1/(amplitude k²) from the surface; further away nobody looks
+    real steepest() const override { return 2; }  // within a tenth of 1/(amplitude k²) from the surface; larger distances are not used
     bool convex_along(const Vec<D>& direction) const override { return direction[0] == 0; }  // linear: the slope is of x alone
     Vec<D> centre() const override { return level * Vec<D>::unit(1); }
     std::string code() const override { return call("shape_wave", level, amplitude, k); }
@@ -92,7 +92,7 @@ struct Capsule final : Shape<D> {
     std::string code() const override { return call("shape_capsule", a, b, radius); }
 };
 
-/// In coordinates along the axis (z, from the middle) and across it (r) the cylinder is the box |z| <= half, r <= radius.
+/// In coordinates along the axis (z, from the centre) and across it (r) the cylinder is the box |z| <= half, r <= radius.
 template <int D>
 struct Cylinder final : Shape<D> {
     Vec<D> middle, axis;
@@ -165,7 +165,7 @@ struct OfTriangles final : Shape<3> {
     PosedMesh posed;
     explicit OfTriangles(PosedMesh p) : posed(std::move(p)) {}
     real distance(const Vec<3>& x) const override { return posed.scale * posed.mesh->distance(posed.to_file(x)); }
-    real steepest() const override { return std::sqrt(3.0); }  // linear between nodes whose own are exact
+    real steepest() const override { return std::sqrt(3.0); }  // linear between nodes with exact values
     Vec<3> centre() const override { return posed.to_scene(posed.mesh->centre()); }
     std::string code() const override {
         throw BadInput("a shape \"mesh\" is not supported on OpenCL devices: set scheme.backend = \"threads\"");

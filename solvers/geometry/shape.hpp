@@ -1,6 +1,6 @@
-// Shapes as signed distances (negative inside), made from a scene's tables: the one description of liquid, solids and emitters.
-// Distances of box, sphere, plane, capsule and cylinder are exact; a union's is exact outside, a difference's is a lower bound of the
-// magnitude (Quilez 2008, "Modeling with distance functions"; Ericson 2005, ch. 5).
+// Shapes as signed distances (negative inside), constructed from a scene's tables: the common description of liquid, solids and emitters.
+// Distances of box, sphere, plane, capsule and cylinder are exact; that of a union is exact outside, that of a difference is a lower bound
+// of the magnitude (Quilez 2008, "Modeling with distance functions"; Ericson 2005, ch. 5).
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
@@ -18,7 +18,7 @@ class Shape;
 template <int D>
 using ShapePtr = std::shared_ptr<const Shape<D>>;
 
-/// What a shape is made of: some shapes together, without others. None where it is one by itself.
+/// The parts of a compound shape: added and subtracted shapes. Empty for a simple shape.
 template <int D>
 struct Parts {
     std::vector<ShapePtr<D>> united{}, removed{};
@@ -31,16 +31,16 @@ public:
     virtual ~Shape() = default;
     /// Signed distance from x to the surface [m], negative inside.
     virtual real distance(const Vec<D>& x) const = 0;
-    /// How fast the distance may grow with the way.
+    /// Upper bound of the gradient of the distance.
     virtual real steepest() const { return 1; }
-    /// Whether the distance is convex along lines of a direction.
+    /// Returns whether the distance is convex along lines of a direction.
     virtual bool convex_along(const Vec<D>& /*direction*/) const { return false; }
     virtual Parts<D> parts() const { return {}; }
-    /// Where moving shapes turn about when no centre is given.
+    /// The default centre of rotation.
     virtual Vec<D> centre() const = 0;
-    /// distance(x) for devices: an expression of OpenCL C over the functions of particles/kernels/shapes.cl.
+    /// distance(x) on devices: an expression of OpenCL C with the functions of particles/kernels/shapes.cl.
     virtual std::string code() const = 0;
-    /// Its triangles, where it is given by some: for those who draw or weigh it.
+    /// Its triangles, if any: for drawing and mass properties.
     virtual const PosedMesh* mesh() const { return nullptr; }
     bool contains(const Vec<D>& x) const { return distance(x) < 0; }
 };
@@ -50,7 +50,7 @@ ShapePtr<D> box(const Vec<D>& min, const Vec<D>& max);
 /// A circle in 2D.
 template <int D>
 ShapePtr<D> sphere(const Vec<D>& centre, real radius);
-/// The half space behind the normal (which need not have length one).
+/// The half space behind the normal (which need not have unit length).
 template <int D>
 ShapePtr<D> plane(const Vec<D>& point, const Vec<D>& normal);
 /// All points below y = level + amplitude cos(2 pi x / wavelength). The distance is of second order in the slope.
@@ -66,7 +66,7 @@ ShapePtr<D> unite(std::vector<ShapePtr<D>> parts);
 template <int D>
 ShapePtr<D> subtract(ShapePtr<D> from, std::vector<ShapePtr<D>> minus);
 
-/// The shape that a scene's table describes: { shape = "sphere", centre = [...], radius = ... }.
+/// The shape of a scene's table: { shape = "sphere", centre = [...], radius = ... }.
 template <int D>
 ShapePtr<D> make_shape(const scene::Table& table);
 /// All shapes of a list of tables ("liquid", ...), in order.

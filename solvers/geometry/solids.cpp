@@ -40,14 +40,14 @@ Solids<D>::Solids(const scene::Scene& scene) : Solids(scene.root().tables("solid
     set_time(0);
 }
 
-/// Images that never reach the domain are left out: of a solid that stands, where its distance says so.
+/// Images that never reach the domain are omitted: for a fixed solid, where its distance shows this.
 template <int D>
 void Solids<D>::repeat(const scene::Scene& scene) {
     if (empty() || !scene.has("grid.periodic")) return;
     const Vec<D> size = scene.vec<D>("grid.size");
     const Region<D> domain{scene.vec<D>("grid.origin"), scene.vec<D>("grid.origin") + size};
-    std::size_t all = 1;                                                 // a period back, none, a period on, along each periodic axis
-    for (const std::string& axis : scene.root().texts("grid.periodic"))  // the sides' kinds are in it
+    std::size_t all = 1;                                                 // images at −1, 0 and +1 periods along each periodic axis
+    for (const std::string& axis : scene.root().texts("grid.periodic"))  // includes the sides' kinds
         if (const int a = axis[0] - 'x'; a < D) period_[a] = size[a], all *= 3;
     if (all == 1) return;
     origin_ = domain.min;
@@ -73,7 +73,7 @@ bool Solids<D>::reaches(const Region<D>& domain, const Solid<D>& solid, const In
     return solid.shape->distance(middle) < solid.shape->steepest() * 0.5 * norm(domain.max - domain.min);
 }
 
-/// A solid is counted where the middle of its shape is in the domain, and its images from there.
+/// A solid is kept where the centre of its shape is in the domain, with its images relative to that.
 template <int D>
 Pose<D> Solids<D>::placed(const Image& image, real t) const {
     const Solid<D>& solid = solids_[image.of];
@@ -105,7 +105,7 @@ void Solids<D>::place(std::size_t solid, const Pose<D>& pose) {
     balls_[solid].middle = pose.to_world(middles_[solid]);
 }
 
-/// No point of a ball is nearer than its middle less its radius.
+/// Lower bound of a ball's distance: that of its centre minus its radius.
 template <int D>
 bool Solids<D>::may_be_nearer(std::size_t solid, const Vec<D>& x, real than) const {
     const real reach = than + balls_[solid].radius;
@@ -201,7 +201,7 @@ Vec<D> Solids<D>::normal(const Vec<D>& x, real eps, std::span<const std::size_t>
 }
 
 namespace {
-/// Out of what `distance` tells by `margin`, along `normal`: two steps of Newton's.
+/// Moves x out of `distance` by `margin`, along `normal`: two Newton steps.
 template <int D, class Distance, class Normal>
 Vec<D> pushed_out(Vec<D> x, real margin, Distance&& distance, Normal&& normal) {
     for (int newton = 0; newton < 2; ++newton) {
@@ -252,7 +252,7 @@ real fraction_positive(const std::array<real, 4>& v) {
     if (count == 3) return corner_area(v, find(false));
     if (in[0] == in[2]) {  // saddle: two opposite corners inside
         const bool middle_inside = v[0] + v[1] + v[2] + v[3] < 0;
-        const std::size_t odd = in[0] == middle_inside ? 1 : 0;  // corners that are cut off on their own
+        const std::size_t odd = in[0] == middle_inside ? 1 : 0;  // corners that are cut off separately
         const real cut = corner_area(v, odd) + corner_area(v, odd + 2);
         return middle_inside ? cut : 1 - cut;
     }

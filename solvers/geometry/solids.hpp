@@ -1,4 +1,4 @@
-// The solids of a scene at a time: distance, velocity, and the fraction of each cell face that is open to flow.
+// The solids of a scene at a time: distance, velocity, and the open fraction of each cell face.
 #pragma once
 #include "core/types.hpp"
 #include "geometry/motion.hpp"
@@ -19,59 +19,59 @@ struct Solid {
     ShapePtr<D> shape;
     Motion<D> motion;
     bool no_slip = false;
-    bool free = false;  // whoever moves it says where it is (place)
+    bool free = false;  // its pose is set from outside (place)
 };
 
-/// A ball that holds a solid; without end where none is known.
+/// A bounding ball of a solid; infinite where none is known.
 template <int D>
 struct Ball {
     Vec<D> middle{};
     real radius = infinity;
 };
 
-/// A part of space.
+/// An axis-aligned region of space.
 template <int D>
 struct Region {
     Vec<D> min, max;
 };
 
-/// All solids; set_time() places them, every query speaks of that time.
+/// All solids; set_time() moves them, and all queries refer to that time.
 template <int D>
 class Solids {
 public:
     Solids() = default;
-    /// From the scene's list "solids"; none where it names none. Periodic sides repeat them as they repeat the fluid: of each solid there
-    /// is an image a period further along each periodic axis, and what leaves through one side comes in through the other.
+    /// From the scene's list "solids"; empty where it has none. Periodic sides repeat them like the fluid: each solid has an image one
+    /// period further along each periodic axis, and a solid that leaves through one side enters through the other.
     explicit Solids(const scene::Scene& scene);
     /// From a list, without sides.
     explicit Solids(const std::vector<scene::Table>& tables);
 
     bool empty() const { return solids_.empty(); }
-    /// The solids of the list, then their images, then those that are free.
+    /// The solids of the list, then their images, then the free ones.
     std::size_t count() const { return solids_.size(); }
-    /// Which of the scene's list solid i is, or is an image of.
+    /// Index in the scene's list of solid i, or of the solid that it is an image of.
     std::size_t in_list(std::size_t i) const { return i < images_.size() ? images_[i].of : i; }
-    /// Whether any solid moves: otherwise fractions never change.
+    /// Returns whether any solid moves; otherwise fractions never change.
     bool moving() const;
     void set_time(real t);
-    /// A solid that moves as it is told to: its place is the last one given, at any time. `ball` holds it where it rests.
+    /// Adds a solid moved from outside: its pose is the last one set, at any time. `ball`: bounding ball at its initial position.
     void add_free(ShapePtr<D> shape, bool no_slip, const Ball<D>& ball = {});
     void place(std::size_t solid, const Pose<D>& pose);
-    /// Holds the solid where it is.
+    /// Bounding ball of the solid at its present position.
     const Ball<D>& ball(std::size_t solid) const { return balls_[solid]; }
     const Solid<D>& operator[](std::size_t i) const { return solids_[i]; }
 
     /// Signed distance to the nearest solid [m], negative inside; +infinity without solids.
     real distance(const Vec<D>& x) const;
     real distance(std::size_t solid, const Vec<D>& x) const { return solids_[solid].shape->distance(poses_[solid].to_rest(x)); }
-    /// The solid whose surface is nearest (deepest inside wins); needs at least one.
+    /// The solid with the nearest surface (deepest inside wins); there must be at least one.
     std::size_t nearest(const Vec<D>& x) const;
-    /// Those that may be nearer than `than` to some point of a region, in order. Where one of them is as near as that, the questions below,
-    /// asked of these alone, have the answer of all.
+    /// The solids that may be nearer than `than` to some point of a region, in order. Where one of them is that near, the following queries
+    /// restricted to them give the result for all solids.
     void find_near(const Region<D>& where, real than, std::vector<std::size_t>& near) const;
-    /// How fast their distance may grow with the way.
+    /// Upper bound of the gradient of their distances.
     real steepest(std::span<const std::size_t> of) const;
-    /// `most`, or less.
+    /// The smaller of the distance and `most`.
     real distance(const Vec<D>& x, std::span<const std::size_t> of, real most = infinity) const;
     std::size_t nearest(const Vec<D>& x, std::span<const std::size_t> of) const;
     Vec<D> velocity(const Vec<D>& x, std::span<const std::size_t> of) const { return poses_[nearest(x, of)].velocity_at(x); }
@@ -80,13 +80,13 @@ public:
     Vec<D> velocity(const Vec<D>& x) const { return poses_[nearest(x)].velocity_at(x); }
     /// Outward unit normal of the distance field, by central differences over ± eps [m].
     Vec<D> normal(const Vec<D>& x, real eps) const;
-    /// x, or the nearest point at distance `margin` outside when x is closer than that (two Newton steps along the gradient).
+    /// x, or the closest point at distance `margin` outside when x is closer than that (two Newton steps along the gradient).
     Vec<D> push_out(const Vec<D>& x, real margin, real eps) const;
     Vec<D> push_out(const Vec<D>& x, real margin, real eps, std::span<const std::size_t> of) const;
     const Pose<D>& pose(std::size_t solid) const { return poses_[solid]; }
 
 private:
-    /// Of which solid it is the image, and how many periods away it is.
+    /// The solid of an image, and its displacement in periods.
     struct Image {
         std::size_t of = 0;
         Index<D> periods{};
@@ -98,9 +98,9 @@ private:
 
     std::vector<Solid<D>> solids_;
     std::vector<Pose<D>> poses_;
-    std::vector<Ball<D>> balls_;   // where they are
-    std::vector<Vec<D>> middles_;  // of the balls, where they rest
-    std::vector<Image> images_;    // of each solid of the list, itself the first of its own; empty where no side is periodic
+    std::vector<Ball<D>> balls_;   // at present positions
+    std::vector<Vec<D>> middles_;  // of the balls, at initial positions
+    std::vector<Image> images_;    // of each solid of the list, each itself first; empty without periodic sides
     Vec<D> origin_{}, period_{};   // 0 along axes that are not periodic [m]
 };
 
@@ -110,11 +110,11 @@ real fraction_positive(real a, real b);
 /// squares with linear edges (Ng, Min & Gibou 2009). The saddle is resolved by the mean.
 real fraction_positive(const std::array<real, 4>& corner);
 
-/// Parts of a cell's edge: nearer to a corner than this, a solid's surface passes through it. Round-off of a distance is far below.
+/// Relative to a cell's edge: a solid's surface closer to a corner passes through it. Round-off of a distance is far below.
 inline constexpr real touching = 1e-6;
 
-/// A corner's distance d as its face counts it. On the surface itself it says nothing about the face: a solid may lie on the face, or touch
-/// it at the corner alone. So a little way along the face the distance decides, and the corner is just inside or just outside.
+/// A corner's distance d for its face. A distance of zero is ambiguous: a solid may lie on the face, or touch it at the corner alone. Then
+/// the distance at a small offset along the face decides whether the corner is just inside or just outside.
 template <int D, class Distance>
 real distance_for_face(real d, const Distance& distance, const Vec<D>& corner, const Vec<D>& centre, real h_min) {
     if (std::abs(d) > touching * h_min) return d;
@@ -135,7 +135,7 @@ std::array<Vec<D>, 1 << (D - 1)> face_corners(const Vec<D>& x, const Vec<D>& h, 
     }
 }
 
-/// Open fraction of a face: `at` its corners the distances, in order around it.
+/// Open fraction of a face; `at`: the distances at its corners, in order around it.
 template <int D, class Distance>
 real open_fraction(const Distance& distance, std::array<real, 1 << (D - 1)> at, const Vec<D>& x, const Vec<D>& h, int axis) {
     const auto corner = face_corners<D>(x, h, axis);
@@ -148,7 +148,7 @@ real open_fraction(const Distance& distance, std::array<real, 1 << (D - 1)> at, 
     else
         return fraction_positive(at);
 }
-/// Of the face on the lower side along `axis` of the cell whose lower corner is x.
+/// For the face on the lower side along `axis` of the cell whose lower corner is x.
 template <int D, class Distance>
 real open_fraction(const Distance& distance, const Vec<D>& x, const Vec<D>& h, int axis) {
     const auto corner = face_corners<D>(x, h, axis);

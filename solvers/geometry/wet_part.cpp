@@ -9,7 +9,7 @@ namespace weir::geometry {
 
 namespace wet_part {
 
-/// Liquid and solids of a scene, looked at in the middle of cells.
+/// Liquid and solids of a scene, sampled at cell centres.
 template <int D>
 class Look {
 public:
@@ -23,13 +23,13 @@ public:
     }
 
     int planes() const { return n_[D - 1]; }
-    /// All cells of a plane for each that is looked at.
+    /// Number of cells of a plane per sample.
     real each() const {
         real each = 1;
         for (int a = 0; a + 1 < D; ++a) each *= static_cast<real>(n_[a]) / looks_[a];
         return each;
     }
-    /// f(place) for at most so many cells along each axis of a plane, evenly spread.
+    /// f(point) for at most `most` cells along each axis of a plane, evenly spread.
     template <class F>
     void for_each_of_plane(int plane, F&& f) const {
         for (int j = 0; j < (D == 2 ? 1 : looks_[1]); ++j)
@@ -49,7 +49,8 @@ public:
     bool in_solids(const Vec<D>& x) const {
         return std::any_of(solids_.begin(), solids_.end(), [&](const auto& shape) { return shape->contains(x); });
     }
-    /// Does liquid begin or end within this distance of x, along an axis and inside the domain? Where it meets a wall it has no surface.
+    /// Returns whether the liquid's boundary lies within this distance of x, along an axis and inside the domain. At walls it has no
+    /// surface.
     bool near_surface(const Vec<D>& x, real beside) const {
         const bool wet = in_liquid(x);
         for (int a = 0; a < D; ++a)

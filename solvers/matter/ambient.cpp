@@ -15,7 +15,7 @@ Key temperature_key(const char* doc) {
     return {.name = "temperature", .type = Type::number, .doc = doc, .unit = "K", .min = 0, .min_open = true};
 }
 
-/// Whether all frames say it; refuses the first that does not where another one does.
+/// Returns whether all keyframes give this value; throws for the first one without it where another has it.
 bool all_say(const scene::Scene& scene, const std::vector<scene::Table>& frames, const char* what) {
     const auto says = [&](const scene::Table& frame) { return frame.has(what); };
     if (std::none_of(frames.begin(), frames.end(), says)) return false;
@@ -97,7 +97,7 @@ real Ambient::to_next_frame(real t) const {
     real least = infinity;
     for (const auto* frames : {&temperature_, &pressure_})
         for (const Frame& frame : *frames)
-            if (t < frame.t * (1 - 1e-9)) least = std::min(least, frame.t - t);  // a sum of rounded steps that ends there counts as there
+            if (t < frame.t * (1 - 1e-9)) least = std::min(least, frame.t - t);  // tolerance for a sum of rounded steps that ends there
     return least;
 }
 

@@ -11,7 +11,7 @@ namespace weir::matter {
 
 using thermo::State;
 
-/// p ← p ρ/ρ(T, p), a contraction.
+/// Fixed-point iteration p ← p ρ/ρ(T, p), a contraction.
 real pressure_of_vapour(const thermo::Substance& substance, real density, real T) {
     if (density <= 0) return 0;
     const real most = 0.999 * substance.critical()->p;
@@ -63,7 +63,7 @@ void ClosedGas::fill(real T, real liquid) {
     p_ = pressure_of_vapour(*substance_, mass_ / volume_, T);
 }
 
-/// d(p_sat − p)/dt = −(p_sat/(ρ_v V) + L/C dp_sat/dT) dm/dt, with all of it as at the beginning.
+/// d(p_sat − p)/dt = −(p_sat/(ρ_v V) + L/C dp_sat/dT) dm/dt, with all coefficients at the start of the step.
 real ClosedGas::evaporates(real K, real T, real capacity, real dt) const {
     const auto line = line_to_vapour(*substance_, T);
     const real p = substance_->pressure(line, T);

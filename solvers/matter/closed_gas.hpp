@@ -1,8 +1,7 @@
-// The part of a closed rigid box above a liquid: vapour alone, with one pressure of its mass, its volume and its temperature, which is the
-// surface's. It comes to the saturation pressure as liquid evaporates or vapour condenses,
+// The gas part of a closed rigid box above a liquid: pure vapour with a uniform pressure, determined by its mass, volume and temperature,
+// which is that of the surface. It approaches the saturation pressure by evaporation or condensation,
 //     dm/dt = K (p_sat(T) − p),    K = A e [kg/(s Pa)].
-// In a volume that stays, what evaporates takes u_v − u_l = L − p (1/ρ_v − 1/ρ_l): less than L by the work of an expansion that there is
-// not.
+// At constant volume, evaporation takes u_v − u_l = L − p (1/ρ_v − 1/ρ_l): less than L, since there is no work of expansion.
 #pragma once
 #include "matter/melting.hpp"
 #include "scene/scene.hpp"
@@ -12,13 +11,13 @@
 
 namespace weir::matter {
 
-/// Of vapour of this density, which is nearly in proportion to p [Pa]; below the critical pressure.
+/// Pressure of vapour of this density [Pa]; below the critical pressure.
 real pressure_of_vapour(const thermo::Substance& substance, real density, real T);
 
-/// The line on which vapour is in balance with what is as warm as T.
+/// The line on which vapour is in equilibrium with matter of temperature T.
 thermo::Boundary line_to_vapour(const thermo::Substance& substance, real T);
 
-/// Energy of vapour in balance at T, in which what is condensed has the enthalpy of `melting` [J/kg].
+/// Energy of vapour in equilibrium at T, where the condensed phase has the enthalpy of `melting` [J/kg].
 real energy_of_vapour(const thermo::Substance& substance, const Melting& melting, real T);
 
 class ClosedGas {
@@ -26,13 +25,13 @@ public:
     static bool named(const scene::Scene& scene) { return scene.has("heat.enclosed_vapour"); }
     /// The key "enclosed_vapour" of the table "heat".
     static scene::Key key();
-    /// In `space` that it shares with `liquid` [m^D], at the temperature of the surface. Refuses what contradicts a gas of its own.
+    /// A gas that shares `space` [m^D] with `liquid`, at the temperature of the surface. Rejects contradictory keys of a scene.
     ClosedGas(const scene::Scene& scene, thermo::SubstancePtr substance, const Melting& melting, real space, real liquid, real T);
 
-    /// How much evaporates in dt from a surface whose `capacity` [J/K] feels the heat of evaporation: the pressures approach each other
-    /// exponentially, at the rate of their linear equations, so that no step is too long [kg].
+    /// Mass that evaporates in dt from a surface with heat capacity `capacity` [J/K], which supplies the heat of evaporation [kg]. The
+    /// pressures approach each other exponentially, with the rate of the linearized equations, so any step is stable.
     real evaporates(real K, real T, real capacity, real dt) const;
-    /// Takes this much over, and is as warm as the surface. Answers by how much its energy has grown.
+    /// Adds this mass, at the temperature of the surface. Returns the increase of the gas's energy.
     real take(real mass, const Melting& melting, real T, real liquid);
 
     real pressure() const { return p_; }

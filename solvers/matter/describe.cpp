@@ -1,4 +1,4 @@
-// A substance as text for people: weir describe substance NAME.
+// A substance as text for users: weir describe substance NAME.
 #include "matter/substance.hpp"
 
 #include <fmt/format.h>
@@ -42,7 +42,7 @@ std::string constants_text(const Substance& s, const HeatCurve& curve) {
     return out;
 }
 
-/// Eleven rows along a line.
+/// Eleven rows along a phase boundary.
 std::string line_text(const Substance& s, Boundary boundary) {
     if (!s.has(boundary)) return "";
     const auto [lo, hi] = s.ends(boundary);

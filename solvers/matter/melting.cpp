@@ -49,7 +49,7 @@ Melting melting_of(const scene::Scene& scene, const std::string& solver) {
     return m;
 }
 
-/// Simpson's rule a step. The table ends where the liquid boils; where it never does, at three times the melting temperature.
+/// Simpson's rule per step. The table ends where the liquid boils; without boiling, at three times the melting temperature.
 Lightness::Lightness(const scene::Scene& scene) {
     const auto substance = substance_of(scene);
     const Melting m = melting_of(scene, "");

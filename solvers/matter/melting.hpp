@@ -1,5 +1,5 @@
-// Solid and liquid of a substance at the pressure of a scene, as loops over cells or particles use them: temperature against specific
-// enthalpy with the plateau on which the one turns into the other (Voller & Prakash 1987).
+// Solid and liquid of a substance at the pressure of a scene, for loops over cells or particles: temperature as a function of specific
+// enthalpy with the plateau of the phase change (Voller & Prakash 1987).
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
@@ -22,22 +22,22 @@ struct Melting {
         return T + ((std::min(h, h_solid) - h_solid) / c_solid + (std::max(h, h_liquid) - h_liquid) / c_liquid);
     }
     real liquid(real h) const { return h >= h_liquid ? 1 : h <= h_solid ? 0 : (h - h_solid) / (h_liquid - h_solid); }
-    /// At the temperature of melting, that of the liquid.
+    /// At the melting temperature, that of the liquid.
     real enthalpy(real at) const { return at < T ? h_solid + c_solid * (at - T) : h_liquid + c_liquid * (at - T); }
-    /// dH/dT; 0 on the plateau, where the temperature does not change.
+    /// dH/dT; 0 on the plateau, where the temperature is constant.
     real capacity(real h) const { return h < h_solid ? c_solid : h > h_liquid ? c_liquid : 0; }
     real conductivity(real share) const { return k_solid + share * (k_liquid - k_solid); }
 };
 
-/// Of a scene's substance at its `heat.pressure`. Refuses what never is a liquid that freezes, and a `fluid.density` that neither has:
-/// `solver` takes one density for both, and is named in the message.
+/// For a scene's substance at its `heat.pressure`. Rejects substances without a liquid that freezes, and a `fluid.density` that is neither
+/// phase's: `solver` uses one density for both, and is named in the message.
 Melting melting_of(const scene::Scene& scene, const std::string& solver);
 
-/// At another pressure. Throws BadInput where there is no melting liquid at it.
+/// At another pressure. Throws BadInput where there is no melting at it.
 Melting melting_at(const thermo::Substance& substance, real pressure);
 
-/// How much lighter than at its melting point a liquid is: the integral of its coefficient of expansion over temperature, by which gravity
-/// is multiplied in Boussinesq's approximation. Nothing in a solid.
+/// Relative density difference of a liquid to its melting point: the integral of the coefficient of thermal expansion over temperature, the
+/// factor of gravity in the Boussinesq approximation. Zero in a solid.
 class Lightness {
 public:
     explicit Lightness(const scene::Scene& scene);
@@ -48,7 +48,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t steps = 512;  // of water a sixth of a kelvin up to boiling
+    static constexpr std::size_t steps = 512;  // for water a sixth of a kelvin up to boiling
     real melts_, per_step_;
     std::array<real, steps + 1> value_{};
 };

@@ -1,5 +1,4 @@
-// What a scene says of the stuff that it is made of: one part of the schema for every solver that knows temperature, and the substance made
-// of it.
+// The substance of a scene: a common part of the schema for every solver with temperature, and the construction of the substance.
 #pragma once
 #include "scene/scene.hpp"
 #include "thermo/substance.hpp"
@@ -8,13 +7,13 @@
 
 namespace weir::matter {
 
-/// The key "substance": "water", or a table with constants of one's own or of an equation of state.
+/// The key "substance": "water", or a table with constants or the parameters of an equation of state.
 scene::Key substance_key();
 
-/// The substance of a scene whose solver has the key. Refuses constants that cannot be, at their place.
+/// The substance of a scene whose solver has the key. Rejects invalid constants, at their key.
 thermo::SubstancePtr substance_of(const scene::Scene& scene);
 
-/// What a substance is, in numbers: its points, lines and constants.
+/// The properties of a substance: its points, phase boundaries and constants.
 std::string describe(const thermo::Substance& substance);
 
 }  // namespace weir::matter

@@ -16,7 +16,7 @@ namespace weir::output {
 
 namespace {
 
-/// In numbers of the array: [first, last) are this rank's, and the blocks [begin, end) begin there.
+/// Indices of array elements: [first, last) belong to this rank, and the blocks [begin, end) start there.
 struct OwnBlocks {
     std::size_t in_block, all, first, last, begin, end;
 
@@ -28,16 +28,16 @@ struct OwnBlocks {
           last(components(array) * array.tuples.end(rank)),
           begin((first + in_block - 1) / in_block),
           end((last + in_block - 1) / in_block) {}
-    /// What of this part is in a block that another rank has begun, up to here.
+    /// End of this part's elements that belong to a block started by another rank.
     std::size_t head_end() const { return std::min(last, begin * in_block); }
-    /// What this rank's last block has of others' parts, up to here.
+    /// End of the elements of other ranks in this rank's last block.
     std::size_t tail_end() const { return begin < end ? std::min(all, end * in_block) : last; }
 
 private:
     static std::size_t components(const DataArray& array) { return static_cast<std::size_t>(array.components); }
 };
 
-/// The numbers behind this rank's part that its last block has too, from those who have them.
+/// The elements after this rank's part that belong to its last block, received from their ranks.
 std::vector<std::byte> tail_of(const DataArray& array) {
     const OwnBlocks own(array);
     std::vector<std::byte> tail((own.tail_end() - own.last) * array.bytes_of_number),
@@ -65,20 +65,20 @@ std::vector<std::byte> tail_of(const DataArray& array) {
 }
 
 #ifdef WEIR_HAS_VTK
-/// VTK's, which is one thread's at a time.
+/// VTK's compressor, for a single thread.
 vtkSmartPointer<vtkDataCompressor> compressor_of(Compression compression) {
     if (compression == Compression::lz4) {
         auto lz4 = vtkSmartPointer<vtkLZ4DataCompressor>::New();
-        lz4->SetCompressionLevel(5);  // as VTK's writers have it where nobody says
+        lz4->SetCompressionLevel(5);  // the default of VTK's writers
         return lz4;
     }
     auto zlib = vtkSmartPointer<vtkZLibDataCompressor>::New();
-    zlib->SetCompressionLevel(1);  // higher levels take several times as long on noise-like doubles, for a few per cent
+    zlib->SetCompressionLevel(1);  // higher levels take several times as long for noise-like doubles and gain a few per cent
     return zlib;
 }
 
 EncodedPart compressed_part(const DataArray& array, Compression compression) {
-    constexpr std::size_t of_thread = 8;  // blocks at once
+    constexpr std::size_t of_thread = 8;  // number of blocks at once
     const OwnBlocks own(array);
     const std::vector<std::byte> tail = tail_of(array);
     std::vector<vtkSmartPointer<vtkDataCompressor>> compressors;
@@ -89,7 +89,7 @@ EncodedPart compressed_part(const DataArray& array, Compression compression) {
     std::vector<unsigned char> packed(most * room);
     EncodedPart part;
     part.sizes.resize(own.end - own.begin);
-    part.bytes.reserve(part.sizes.size() * room);  // of which no page is there until something stands in it
+    part.bytes.reserve(part.sizes.size() * room);  // reserved only: pages are committed when written
     for (std::size_t batch = own.begin; batch < own.end; batch += most) {
         const std::size_t count = std::min(most, own.end - batch);
         parallel_for(0, static_cast<int>(count), [&](int i) {
@@ -130,7 +130,7 @@ EncodedPart encoded_part(const DataArray& array, Compression compression) {
 }
 
 Extremes extremes_of(const DataArray& array) {
-    constexpr std::size_t piece = 4096;  // tuples
+    constexpr std::size_t piece = 4096;  // number of tuples
     const int rank = slabs().rank();
     const std::size_t begin = array.tuples.begin(rank), end = array.tuples.end(rank);
     std::vector<Extremes> pieces((end - begin + piece - 1) / piece);

@@ -10,12 +10,12 @@ namespace weir::output {
 
 namespace {
 
-/// What a path means: that which its links point to, also where nothing stands there yet.
+/// Resolves the symbolic links of a path, also where the target does not exist yet.
 std::filesystem::path target_of(std::filesystem::path path) {
     std::error_code failed;
-    constexpr int most = 40;  // links in a row, as Linux has it
+    constexpr int most = 40;  // number of links, as in Linux
     for (int i = 0; i < most && std::filesystem::is_symlink(path, failed); ++i)
-        path = path.parent_path() / std::filesystem::read_symlink(path, failed);  // an absolute link replaces all of it
+        path = path.parent_path() / std::filesystem::read_symlink(path, failed);  // an absolute link replaces the whole path
     return path;
 }
 

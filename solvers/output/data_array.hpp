@@ -1,4 +1,4 @@
-// A data array of a file, as it is asked for: its numbers are found where they are written, and over ranks each has some of its tuples.
+// Description of a data array of a file: its elements are fetched while it is written, and in parallel each rank has a part of its tuples.
 #pragma once
 #include "core/slabs.hpp"
 #include "core/types.hpp"
@@ -15,8 +15,8 @@
 
 namespace weir::output {
 
-/// The least and the largest of some numbers, as VTK finds them: of none what it calls the largest and the least double. Of equal ones (0
-/// and -0) the first, where VTK has that of whichever thread was first.
+/// Minimum and maximum as computed by VTK: for an empty array, the largest and the lowest double. Of equal values (0 and -0) the first one,
+/// where VTK takes that of whichever thread was first.
 struct Extremes {
     static constexpr double least_of_none = 1.0e+299, most_of_none = -1.0e+299;
     double least = least_of_none, most = most_of_none;
@@ -30,17 +30,17 @@ struct Extremes {
     }
 };
 
-/// Numbers of one type, tuple by tuple.
+/// Elements of one type, tuple by tuple.
 class Numbers {
 public:
     virtual ~Numbers() = default;
-    /// Numbers [first, first + count) of all, where component c of tuple i is number c + components i.
+    /// Copies the elements [first, first + count); component c of tuple i is element c + components i.
     virtual void copy(std::size_t first, std::size_t count, std::byte* to) const = 0;
-    /// Of these tuples; of several components the squares of their lengths.
+    /// Extremes of these tuples; for several components the squares of the magnitudes.
     virtual Extremes extremes(std::size_t begin, std::size_t end) const = 0;
 };
 
-/// Which tuples are whose: rank r has [begins[r], begins[r + 1]).
+/// The partition of the tuples: rank r has [begins[r], begins[r + 1]).
 struct Parts {
     std::vector<std::size_t> begins;
 
@@ -48,7 +48,7 @@ struct Parts {
     std::size_t end(int rank) const { return begins[static_cast<std::size_t>(rank) + 1]; }
     std::size_t all() const { return begins.back(); }
     bool all_on_first() const { return begins[1] == all(); }
-    /// All of them are the first rank's.
+    /// All on rank 0.
     static Parts of_first(std::size_t all) {
         Parts parts{std::vector<std::size_t>(static_cast<std::size_t>(slabs().ranks()) + 1, all)};
         parts.begins[0] = 0;
@@ -58,7 +58,7 @@ struct Parts {
 
 struct DataArray {
     std::string name;
-    const char* type;  // as VTK names it
+    const char* type;  // VTK's name
     int components;
     std::size_t bytes_of_number;
     Parts tuples;
@@ -113,7 +113,7 @@ private:
 
 }  // namespace detail
 
-/// Component c of tuple i is value(i, c), whichever rank asks for its own.
+/// Component c of tuple i is value(i, c), evaluated on the rank that has it.
 template <class T, class Value>
 DataArray data_array(std::string name, int components, Parts tuples, Value value) {
     return {std::move(name), detail::vtk_type<T>(), components,

@@ -14,14 +14,14 @@ namespace weir::output {
 
 namespace {
 
-/// What refuse() names.
+/// The name of this process in error messages.
 std::string this_process() {
     char host[256] = {};
     gethostname(host, sizeof host - 1);
     return "process " + std::to_string(getpid()) + " on " + host + '\n';
 }
 
-/// The last owner of a lock removes the file while it still has the lock: a lock on a file that is gone locks nothing.
+/// The last owner of a lock removes the file while holding the lock: a lock on a removed file has no effect.
 bool is_still_there(int descriptor, const std::filesystem::path& path) {
     struct stat open_file {
     }, named{};
@@ -37,7 +37,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder, IfTaken if_taken)
     }
 }
 
-/// Whether it is decided.
+/// Returns whether the lock was taken or cannot be.
 bool FolderLock::try_once() {
     descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor_ < 0) throw OutputError("cannot write " + path_.string() + ": " + std::strerror(errno));
@@ -49,7 +49,7 @@ bool FolderLock::try_once() {
     }
     if (!is_still_there(descriptor_, path_)) return close(descriptor_), false;
     const std::string owner = this_process();
-    if (ftruncate(descriptor_, 0) == 0 && pwrite(descriptor_, owner.data(), owner.size(), 0) < 0) return true;  // a full disk: no name
+    if (ftruncate(descriptor_, 0) == 0 && pwrite(descriptor_, owner.data(), owner.size(), 0) < 0) return true;  // full disk: no name
     return true;
 }
 

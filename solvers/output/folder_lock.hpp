@@ -1,4 +1,4 @@
-// One run at a time in a folder: a lock on a file in it, which the kernel releases when the process ends, however it ends.
+// One run at a time per folder: a lock on a file in it, which the kernel releases when the process ends in any way.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -11,15 +11,15 @@ public:
 
     enum class IfTaken { refuse, wait };
 
-    /// Takes the lock, or waits until another process releases it. Throws BadInput, with the process that has it, where it may not wait.
-    /// Where the file system has no locks the folder is used without one, and unlocked() says why.
+    /// Takes the lock, or waits until another process releases it. Throws BadInput, naming the owner, where waiting is not allowed. On file
+    /// systems without locks the folder is used without one, and unlocked() gives the reason.
     explicit FolderLock(const std::filesystem::path& folder, IfTaken if_taken = IfTaken::refuse);
     /// Removes the file and releases the lock.
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
 
-    /// Why there is no lock; empty where there is one.
+    /// The reason why there is no lock; empty where there is one.
     const std::string& unlocked() const { return unlocked_; }
 
 private:

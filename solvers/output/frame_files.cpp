@@ -19,10 +19,10 @@ DataArray real_array(const FrameOptions& options, std::string name, int componen
     return data_array<double>(std::move(name), components, tuples, std::move(value));
 }
 
-/// Vectors have three components in VTK whatever the dimension: the third is zero in 2D.
+/// Vectors have three components in VTK for any dimension: the third is zero in 2D.
 int vtk_components(const FieldView& field) { return field.components() == 1 ? 1 : 3; }
 
-/// The numbers of a field; of a list of particles that begins with number `first` of all.
+/// The elements of a field; for a part of the particles, starting at global index `first`.
 DataArray as_it_is(const FieldView& field, const Parts& tuples, const FrameOptions& options, std::size_t first = 0) {
     return real_array(options, field.name, vtk_components(field), tuples, [data = field.data, first](std::size_t i, int c) {
         const auto at = static_cast<std::size_t>(c);
@@ -43,7 +43,7 @@ DataArray at_centres(const FieldView& field, const GridView& grid, const Parts& 
     });
 }
 
-/// Whose the planes of an array are, of so many entries each; the first rank's, where all hold whole fields.
+/// The partition of the planes of an array, with `entries` elements per plane; all on rank 0, where all ranks store whole fields.
 Parts parts_of_planes(const FieldSet& fields, std::size_t entries, int planes) {
     if (fields.cut == nullptr) return Parts::of_first(entries * static_cast<std::size_t>(planes));
     Parts parts{{0}};
@@ -52,7 +52,7 @@ Parts parts_of_planes(const FieldSet& fields, std::size_t entries, int planes) {
     return parts;
 }
 
-/// The same of an array of so many entries along each axis.
+/// The same for an array with these extents.
 Parts parts_of_grid(const FieldSet& fields, const std::array<int, 3>& n) {
     const auto slowest = static_cast<std::size_t>(std::max(1, fields.grid.dim) - 1);
     std::size_t plane = 1;
@@ -60,7 +60,7 @@ Parts parts_of_grid(const FieldSet& fields, const std::array<int, 3>& n) {
     return parts_of_planes(fields, plane, n[slowest]);
 }
 
-/// What is hidden from VTK's filters: cells in solids.
+/// Flags of cells hidden from VTK's filters: those in solids.
 DataArray hidden(std::vector<std::uint8_t> solid, const Parts& tuples) {
     constexpr std::uint8_t hidden_cell = 32;  // vtkDataSetAttributes::HIDDENCELL
     return data_array<std::uint8_t>("vtkGhostType", 1, tuples,
@@ -69,7 +69,7 @@ DataArray hidden(std::vector<std::uint8_t> solid, const Parts& tuples) {
                                     });
 }
 
-/// The shortest text that reads back as the same double, as VTK writes attributes (and ECMAScript numbers): 0.000001, 1e-7, no -0.
+/// The shortest text that reads back as the same double, in the format of VTK's attributes (and of ECMAScript): 0.000001, 1e-7, no -0.
 std::string attribute_text(real value) {
     if (value == 0) return "0";
     const bool plain = 1e-6 <= std::abs(value) && std::abs(value) < 1e21;
@@ -83,7 +83,7 @@ std::string attribute_text(real value) {
 
 std::string triple(const std::array<real, 3>& x) { return attribute_text(x[0]) + ' ' + attribute_text(x[1]) + ' ' + attribute_text(x[2]); }
 
-/// An image of so many points along each axis.
+/// An image with these numbers of points along each axis.
 VtkFile image(const std::array<int, 3>& points, const std::array<real, 3>& origin, const std::array<real, 3>& spacing, real t) {
     std::string extent;
     for (std::size_t a = 0; a < 3; ++a) extent += (a > 0 ? " 0 " : "0 ") + std::to_string(points[a] - 1);
@@ -95,12 +95,12 @@ VtkFile image(const std::array<int, 3>& points, const std::array<real, 3>& origi
             .time = t};
 }
 
-/// Between points as between cells; in 2D a third axis without extent.
+/// Between points or cells; in 2D the third axis has no extent.
 std::array<real, 3> spacing_of(const GridView& grid) {
     return {grid.spacing[0], grid.spacing[1], grid.dim == 2 ? grid.spacing[0] : grid.spacing[2]};
 }
 
-/// Which points belong together: how many cells there are, the corners of all, one cell after another, and where each ends in that list.
+/// The connectivity: number of cells, concatenated corners of all cells, and the end of each in that list.
 struct Cells {
     Parts cells, corners;
     std::function<std::int64_t(std::size_t corner)> corner;
@@ -117,7 +117,7 @@ VtkElement element_of(const std::string& name, const Cells& cells) {
 
 Cells no_cells() { return {Parts::of_first(0), Parts::of_first(0), {}, {}}; }
 
-/// A cell for each `corners` in the list.
+/// A cell for every `corners` entries of the list.
 Cells cells_of(const Parts& cells, std::size_t corners, std::function<std::int64_t(std::size_t)> corner) {
     Parts all = cells;
     for (std::size_t& begin : all.begins) begin *= corners;
@@ -128,7 +128,7 @@ Cells all_on_first(std::size_t cells, std::size_t corners, std::function<std::in
     return cells_of(Parts::of_first(cells), corners, std::move(corner));
 }
 
-/// Rows of points as the corners of quadrilaterals.
+/// Quadrilaterals with rows of points as corners.
 Cells quadrilaterals(const SheetView& sheet, const FieldSet& fields) {
     const auto nx = static_cast<std::size_t>(sheet.points[0]);
     return cells_of(parts_of_planes(fields, nx - 1, sheet.points[1] - 1), 4, [nx](std::size_t at) {
@@ -138,7 +138,7 @@ Cells quadrilaterals(const SheetView& sheet, const FieldSet& fields) {
     });
 }
 
-/// Points with their data, and what they are the corners of.
+/// Points with their data and connectivity.
 VtkFile points(std::vector<DataArray> data, const std::string& attributes, DataArray position, const Cells& vertices, const Cells& lines,
                const Cells& polygons, real t) {
     const auto number = [](const std::string& name, std::size_t value) { return with_room(name, std::to_string(value)); };
@@ -179,7 +179,7 @@ VtkFile image_of(const FieldSet& fields, real t, const FrameOptions& options) {
     if (options.solid) {
         const int rank = slabs().rank();
         data.push_back(hidden(options.solid(fields, t, cells.begin(rank), cells.end(rank)), cells));
-        file.version = "2.2";  // the first that knows of hidden cells
+        file.version = "2.2";  // the first version with hidden cells
     }
     file.elements = {{"PointData", "", {}}, {"CellData", "", std::move(data)}};
     return file;

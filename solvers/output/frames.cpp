@@ -68,7 +68,7 @@ Frames Frames::resume(std::filesystem::path folder, FrameOptions options, std::i
 
 namespace {
 
-/// How many of a series are kept. One that begins later than the run is of a branch: it has the frames from there on.
+/// Number of frames of a series to keep. A series that starts later than the run belongs to a branch: it has the frames from there on.
 std::int64_t kept_of(const std::filesystem::path& pvd, std::int64_t kept, real t) {
     const auto entries = read_series(pvd);
     if (!entries.empty() && entries[0].time > 0)
@@ -83,7 +83,7 @@ std::int64_t kept_of(const std::filesystem::path& pvd, std::int64_t kept, real t
 
 void Frames::take_up(std::int64_t kept, real t) {
     require_writable(folder_ / frame_folder);
-    std::map<std::filesystem::path, std::int64_t> frames;  // before any is removed
+    std::map<std::filesystem::path, std::int64_t> frames;  // determined before any is removed
     for (const auto& name : series_in(folder_)) frames[name] = kept_of(folder_ / name, kept, t);
     for (const auto& [name, count] : frames) {
         const auto entries = truncate_series(folder_ / name, count);

@@ -1,6 +1,6 @@
-// Frames of a run as VTK files: one image (.vti) of the grid, one (.vtp) of each particle set, and a .pvd series of each. A frame's files
-// stand before the series names them, and the series is replaced whole, so a killed run leaves a readable one. Over ranks all write a frame
-// together, each its part of the fields: every call is everybody's.
+// Frames of a run as VTK files: one image (.vti) of the grid, one (.vtp) of each particle set, and a .pvd series for each. A frame's files
+// are written before the series names them, and the series is replaced atomically, so a killed run leaves a readable one. In parallel all
+// ranks write a frame together, each its part of the fields: every call is collective.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
@@ -23,29 +23,30 @@ struct VtkFile;
 enum class Compression { none, zlib, lz4 };
 
 struct FrameOptions {
-    std::vector<std::string> fields = {};  // names to write; all where empty. Positions of particles are always written
-    bool faces = false;                    // also an image for each axis with the face components as they are, at the faces' centres
+    std::vector<std::string> fields = {};  // names to write; all where empty. Particle positions are always written
+    bool faces = false;                    // also an image per axis with the face components at the faces' centres
     Compression compression = Compression::zlib;
     bool single_precision = false;
-    /// 1 for each of the cells [begin, end), which are whole planes, that a solid takes at a time: ParaView draws nothing there. Empty:
+    /// 1 for each of the cells [begin, end), which must be whole planes, inside a solid at time t: ParaView hides them. Empty function:
     /// there are no solids.
     std::function<std::vector<std::uint8_t>(const FieldSet& fields, real t, std::size_t begin, std::size_t end)> solid = {};
-    /// The liquid's surface at a time, written as liquid_surface.pvd; over ranks each has its part. Empty: the scene names none.
+    /// The liquid's surface at a time, written as liquid_surface.pvd; in parallel each rank has its part. Empty function: the scene names
+    /// none.
     std::function<const SurfaceMesh&(const FieldSet& fields, real t)> surface = {};
 };
 
-/// Whether this build can write frames at all (WEIR_VTK).
+/// Returns whether this build can write frames (WEIR_VTK).
 bool can_write_frames();
 
-/// Throws BadInput when `options` ask for names that these fields do not have.
+/// Throws BadInput when `options` select names that these fields do not have.
 void check(const FrameOptions& options, const FieldSet& fields);
 
 class Frames {
 public:
-    /// A new series in `folder` (which must be writable); files of an older series of ours there are removed.
+    /// Starts a new series in `folder` (which must be writable); files of an older series by weir are removed.
     Frames(std::filesystem::path folder, FrameOptions options);
-    /// Continues the series in `folder` after time t [s] with frame number `kept` of the run; later frames there are removed. A series of a
-    /// branch, which began within the run, has fewer. Throws BadInput where frames are missing.
+    /// Continues the series in `folder` after time t [s] with frame number `kept` of the run; later frames are removed. The series of a
+    /// branch, which started within the run, has fewer frames. Throws BadInput where frames are missing.
     static Frames resume(std::filesystem::path folder, FrameOptions options, std::int64_t kept, real t);
 
     /// Writes frame `count()` at time t [s]. Throws OutputError; earlier frames stay readable then.
@@ -63,7 +64,7 @@ private:
 
     std::filesystem::path folder_;
     FrameOptions options_;
-    // Over ranks what the first knows:
+    // in parallel known on rank 0 only
     std::vector<real> times_;
     std::map<std::string, std::string> pieces_;  // series by name, and the extension of its files
 };

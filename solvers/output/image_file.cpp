@@ -18,7 +18,7 @@
 namespace weir::output {
 
 namespace {
-constexpr const char* source_key = "Source";  // of the PNG specification's own
+constexpr const char* source_key = "Source";  // a standard key of the PNG specification
 }  // namespace
 
 bool was_made_as(const std::filesystem::path& png, const std::string& made_as) {
@@ -44,7 +44,7 @@ vtkSmartPointer<vtkImageData> image_of(int width, int height, const std::vector<
     image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
     auto* to = static_cast<std::uint8_t*>(image->GetScalarPointer());
     const auto row = static_cast<std::size_t>(3 * width);
-    for (int y = 0; y < height; ++y)  // VTK's images stand on their feet, ours hang from the top
+    for (int y = 0; y < height; ++y)  // VTK's images have the bottom row first, these the top row
         std::copy_n(rgb.data() + row * static_cast<std::size_t>(height - 1 - y), row, to + row * static_cast<std::size_t>(y));
     return image;
 }

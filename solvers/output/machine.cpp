@@ -14,7 +14,7 @@ namespace weir::output {
 
 namespace {
 
-/// What the system says of the first processor; "unknown" where it does not.
+/// A property of the first processor; "unknown" where it is not available.
 std::string of_processor(const std::string& key) {
     std::ifstream cpuinfo("/proc/cpuinfo");
     for (std::string line; std::getline(cpuinfo, line);) {
@@ -26,7 +26,7 @@ std::string of_processor(const std::string& key) {
     return "unknown";
 }
 
-/// A processor's model decides which instructions a native build has and which kernels BLAS takes.
+/// The processor's model determines the instructions of a native build and the kernels of BLAS.
 std::string rounding() {
     return of_processor("vendor_id") + " family " + of_processor("cpu family") + " model " + of_processor("model") + ", " + build_compiler +
            ", " + build_type + ", " + build_options + ", glibc " + gnu_get_libc_version();

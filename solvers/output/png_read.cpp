@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::uint32_t longest_side = 1 << 15;
-constexpr std::size_t most_inflation = 1100;  // zlib's is 1032 at most
+constexpr std::size_t most_inflation = 1100;  // zlib's maximum is 1032
 
 std::uint32_t number_at(std::string_view bytes, std::size_t at) {
     std::uint32_t n = 0;
@@ -27,7 +27,7 @@ std::uint32_t number_at(std::string_view bytes, std::size_t at) {
     return n;
 }
 
-/// CRC-32 of ISO 3309, as Annex D of the standard has it.
+/// CRC-32 of ISO 3309, as in Annex D of the standard.
 std::uint32_t crc_of(std::string_view bytes) {
     static const auto table = [] {
         std::array<std::uint32_t, 256> all{};
@@ -45,10 +45,10 @@ std::uint32_t crc_of(std::string_view bytes) {
 
 struct Chunks {
     std::string_view header{};
-    std::string data{};  // of all IDAT
+    std::string data{};  // of all IDAT chunks
 };
 
-/// Those that say what the picture is, each with a right checksum, to IEND.
+/// The chunks that define the picture, up to IEND, with verified checksums.
 std::optional<Chunks> chunks_of(std::string_view bytes) {
     if (!bytes.starts_with(signature)) return std::nullopt;
     Chunks chunks;
@@ -57,7 +57,7 @@ std::optional<Chunks> chunks_of(std::string_view bytes) {
         if (length > bytes.size() - at - 12) return std::nullopt;
         const auto kind = bytes.substr(at + 4, 4), content = bytes.substr(at + 8, length);
         if (crc_of(bytes.substr(at + 4, 4 + length)) != number_at(bytes, at + 8 + length)) return std::nullopt;
-        if (chunks.header.empty() != (kind == "IHDR")) return std::nullopt;  // it stands first, and once
+        if (chunks.header.empty() != (kind == "IHDR")) return std::nullopt;  // it must be first and unique
         if (kind == "IHDR") chunks.header = content;
         if (kind == "IDAT") chunks.data += content;
         if (kind == "IEND") return chunks;
@@ -66,7 +66,7 @@ std::optional<Chunks> chunks_of(std::string_view bytes) {
     return std::nullopt;
 }
 
-/// What a filter expects of a byte from those to the left, above, and above left (Paeth 1991).
+/// A filter's prediction of a byte from those to the left, above, and above left (Paeth 1991).
 int predicted(int filter, int left, int above, int corner) {
     if (filter == 1) return left;
     if (filter == 2) return above;
@@ -76,7 +76,7 @@ int predicted(int filter, int left, int above, int corner) {
     return a <= b && a <= c ? left : b <= c ? above : corner;
 }
 
-/// Rows as they are stored, a byte of filter in front of each, as rows of values. False where there is no such filter.
+/// Converts stored rows, each preceded by a filter byte, to rows of values. Returns false for an unknown filter.
 bool unfilter(const std::vector<std::uint8_t>& stored, ReadPicture& picture) {
     const std::size_t row = 3 * static_cast<std::size_t>(picture.width), rows = static_cast<std::size_t>(picture.height);
     picture.rgb.resize(row * rows);

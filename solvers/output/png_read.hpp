@@ -1,5 +1,5 @@
-// PNG files (ISO/IEC 15948) of 8-bit RGB in rows, which is what pictures of ours are, read back. Our own reader, because a file may be
-// damaged anywhere: VTK 9.1's ends the program where libpng refuses one.
+// Reads PNG files (ISO/IEC 15948) of 8-bit RGB, the format written by weir. Implemented here because a file may be damaged anywhere: VTK
+// 9.1's reader terminates the program where libpng reports an error.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +13,7 @@ struct ReadPicture {
     std::vector<std::uint8_t> rgb{};  // row by row from the top
 };
 
-/// Nothing where the file is missing, damaged, or a PNG of another kind.
+/// nullopt where the file is missing, damaged, or a PNG of another kind.
 std::optional<ReadPicture> read_png(const std::filesystem::path& file);
 
 }  // namespace weir::output

@@ -22,10 +22,10 @@ std::vector<real> frame_times(const std::filesystem::path& folder) {
 FrameData frame_of(const FieldSet& fields, real t) {
     FrameData frame{.time = t, .grid = fields.grid, .cells = {}, .particles = {}};
     for (const FieldView& f : fields.fields) {
-        if (f.where == Where::face) continue;  // frames hold them on request, as images of their own
+        if (f.where == Where::face) continue;  // frames contain them on request, as separate images
         Components values;
         for (const auto& component : f.data) values.emplace_back(component.begin(), component.end());
-        if (values.size() == 2) values.emplace_back(values[0].size(), 0.0);  // as files have it
+        if (values.size() == 2) values.emplace_back(values[0].size(), 0.0);  // as in files
         (f.where == Where::cell ? frame.cells : frame.particles[f.set])[f.name] = std::move(values);
     }
     return frame;

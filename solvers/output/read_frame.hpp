@@ -1,4 +1,4 @@
-// A frame read back from its VTK files into plain arrays: what the makers of pictures need of VTK.
+// Reads a frame from its VTK files into plain arrays, for rendering.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
@@ -11,7 +11,7 @@
 
 namespace weir::output {
 
-/// Components of one quantity, each with a value a cell or a particle.
+/// Components of one quantity, each with a value per cell or particle.
 using Components = std::vector<std::vector<real>>;
 
 struct FrameData {
@@ -23,10 +23,10 @@ struct FrameData {
 
 /// Times of the frames in an output folder. Throws BadInput where there is none.
 std::vector<real> frame_times(const std::filesystem::path& folder);
-/// Every file of frame number `frame`. `dim` as the scene says: a flat image does not tell. Throws BadInput.
+/// Reads all files of frame number `frame`. `dim`: that of the scene, which an image of one layer does not show. Throws BadInput.
 FrameData read_frame(const std::filesystem::path& folder, std::size_t frame, int dim);
 
-/// The frame that a solver's fields of the moment would be.
+/// The frame of a solver's present fields.
 FrameData frame_of(const FieldSet& fields, real t);
 
 }  // namespace weir::output

@@ -16,7 +16,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 const std::string status_key = ",\n \"status\": ";
-constexpr std::size_t status_room = 400;  // characters, blanks included
+constexpr std::size_t status_room = 400;  // characters, including padding
 constexpr auto replace_bad_text = json::error_handler_t::replace;
 
 json scene_json(const scene::Scene& scene) {
@@ -35,7 +35,7 @@ json machine_json(const Machine& machine) {
             {"build", machine.build}};
 }
 
-/// Quantities that the solver does not have (NaN) are left out.
+/// Omits quantities that the solver does not have (NaN).
 void put(json& to, const char* key, real value) {
     if (std::isfinite(value)) to[key] = value;
 }
@@ -51,7 +51,7 @@ RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene, const std:
                  {"machine", machine_json(machine)},
                  {"scene", scene_json(scene)}};
     head_ = head.dump(1);
-    head_.erase(head_.rfind('\n'));  // open at its end: more keys follow
+    head_.erase(head_.rfind('\n'));  // without the closing brace: more keys follow
 }
 
 void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string& by_all, const std::vector<Traffic>& sent,

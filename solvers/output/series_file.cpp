@@ -73,7 +73,7 @@ std::vector<SeriesEntry> truncate_series(const std::filesystem::path& pvd, std::
     if (entries.empty()) {
         std::filesystem::remove(pvd, ignored);
     } else if (!gone.empty()) {
-        write_file(pvd, series_text(entries));  // the list first, so that it never names a file that is gone
+        write_file(pvd, series_text(entries));  // the list first, so that it never names a removed file
     }
     for (const auto& entry : gone) std::filesystem::remove(pvd.parent_path() / entry.file, ignored);
     return entries;

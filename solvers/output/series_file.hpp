@@ -1,4 +1,4 @@
-// ParaView's .pvd: a list of times and files. We write and read the plain form that we write.
+// ParaView's .pvd: a list of times and files, in the plain form written here.
 #pragma once
 #include "core/types.hpp"
 
@@ -15,16 +15,16 @@ struct SeriesEntry {
 };
 
 std::string series_text(const std::vector<SeriesEntry>& entries);
-/// Throws BadInput when the file is not a series of ours.
+/// Throws BadInput when the file is not a series written by weir.
 std::vector<SeriesEntry> read_series(const std::filesystem::path& pvd);
-/// Where a series of ours keeps its frames, beside the .pvd.
+/// The folder of a series' frames, beside the .pvd.
 inline constexpr const char* frame_folder = "frames";
 
-/// Whether this is a readable .pvd all of whose frames stand in `frame_folder`: only such files are ever changed or removed.
+/// Returns whether this is a readable .pvd all of whose frames lie in `frame_folder`: only such files are ever changed or removed.
 bool is_ours(const std::filesystem::path& pvd);
-/// Names of the .pvd files of ours in a folder, sorted.
+/// Names of the .pvd files by weir in a folder, sorted.
 std::vector<std::filesystem::path> series_in(const std::filesystem::path& folder);
-/// Keeps the first `kept` entries; removes the files of the others, and the .pvd itself when nothing is left. Returns what was kept.
+/// Keeps the first `kept` entries; removes the files of the others, and the .pvd itself when nothing is left. Returns the kept entries.
 std::vector<SeriesEntry> truncate_series(const std::filesystem::path& pvd, std::int64_t kept);
 
 }  // namespace weir::output

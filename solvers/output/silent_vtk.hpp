@@ -1,9 +1,9 @@
-// VTK without its messages, while it lives.
+// Scope in which VTK prints no messages.
 #pragma once
 
 namespace weir::output {
 
-/// VTK prints what it cannot decompress; the message that names the file is ours.
+/// VTK prints decompression errors; weir's own message names the file.
 class SilentVtk {
 public:
     SilentVtk();

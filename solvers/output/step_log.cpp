@@ -35,7 +35,7 @@ void StepLog::resume(std::int64_t last) {
     for (std::size_t i = 1; i < timings_.columns().size(); ++i) passes_.push_back({pass_of(timings_.columns()[i])});
 }
 
-/// The place in passes_ of the solver's pass number `at`, which is mostly the same.
+/// Index in passes_ of the solver's pass number `at`; usually unchanged.
 std::size_t StepLog::place_of(std::size_t at, const std::string& pass) {
     if (at < passes_.size() && passes_[at].name == pass) return at;
     const auto found = std::find_if(passes_.begin(), passes_.end(), [&](const TimedPass& p) { return p.name == pass; });
@@ -68,7 +68,7 @@ void StepLog::add(std::int64_t step, real t, const StepReport& report, const Pas
     for (std::size_t i = 0; i < list.size(); ++i) {
         const std::size_t at = place_of(i, list[i].name);
         double& before = passes_[at].before;
-        const double spent = list[i].seconds >= before ? list[i].seconds - before : list[i].seconds;  // or: were reset
+        const double spent = list[i].seconds >= before ? list[i].seconds - before : list[i].seconds;  // or the passes were reset
         if (spent > 0) row_[at + 1] = 1e3 * spent;
         before = list[i].seconds;
     }

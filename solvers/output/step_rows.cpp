@@ -15,7 +15,7 @@ namespace weir::output {
 
 namespace {
 
-constexpr real largest_whole = 9007199254740992;  // 2^53: up to here each whole number is a double
+constexpr real largest_whole = 9007199254740992;  // 2^53: whole numbers up to here are exact doubles
 
 /// The shortest text that reads back as the same double; whole numbers without an exponent.
 void append(std::string& to, real value) {
@@ -36,7 +36,7 @@ std::vector<std::string> cells_of(const std::string& line) {
     return cells;
 }
 
-/// A line that ends; what a killed run left of one does not count.
+/// Reads a complete line; an incomplete one, left by a killed run, does not count.
 bool next_line(std::ifstream& file, std::string& line) { return std::getline(file, line) && !file.eof(); }
 
 }  // namespace
@@ -83,7 +83,7 @@ void StepRows::resume(std::int64_t last, bool more_columns) {
     open("ab");
 }
 
-/// The bytes of the file that stay; 0 where it is of another kind.
+/// Bytes of the file to keep; 0 where it is of another kind.
 std::int64_t StepRows::read(std::int64_t last, bool more_columns) {
     std::ifstream file(path_, std::ios::binary);
     std::string line, own = head();
@@ -97,7 +97,7 @@ std::int64_t StepRows::read(std::int64_t last, bool more_columns) {
     return kept;
 }
 
-/// Whether the line is a row of a step up to `last`; it is in the summary then.
+/// Returns whether the line is a row of a step up to `last`; it is then added to the summary.
 bool StepRows::take(const std::string& line, std::int64_t last) {
     const auto cells = cells_of(line);
     if (cells.size() != columns_.size() + 1) return false;

@@ -1,4 +1,4 @@
-// A CSV file with one row per step, written as the run goes on. Memory holds a summary of each column, which does not grow with the run.
+// A CSV file with one row per step, written during the run. Memory holds only a summary of each column.
 #pragma once
 #include "core/types.hpp"
 
@@ -22,16 +22,16 @@ struct ColumnSummary {
 
 class StepRows {
 public:
-    /// columns: those beside the first, which is the number of the step. Nothing is written before begin() or resume().
+    /// columns: all except the first, which is the number of the step. Nothing is written before begin() or resume().
     StepRows(std::filesystem::path file, std::vector<std::string> columns);
     ~StepRows();
 
-    /// A new file.
+    /// Starts a new file.
     void begin();
-    /// Keeps the rows up to step `last` of an earlier run's file and removes those after it; a new file where there is none of this kind.
-    /// more_columns: the file may have more columns, which follow.
+    /// Keeps the rows up to step `last` of an earlier run's file and removes later ones; starts a new file where there is none of this
+    /// kind. more_columns: the file may have additional columns at the end.
     void resume(std::int64_t last, bool more_columns = false);
-    /// Appends a row and flushes it; NaN leaves its cell empty. Throws OutputError.
+    /// Appends a row and flushes it; NaN gives an empty cell. Throws OutputError.
     void add(std::int64_t step, std::span<const real> values);
     /// Appends a column; its cells in earlier rows are empty.
     void add_column(const std::string& name);
@@ -55,8 +55,8 @@ private:
     std::unique_ptr<std::FILE, Close> file_;
     std::vector<ColumnSummary> columns_;
     std::int64_t count_ = 0, last_step_ = 0;
-    std::vector<real> row_;  // that is read
-    std::string text_;       // of a row
+    std::vector<real> row_;  // the row being read
+    std::string text_;       // of one row
 };
 
 }  // namespace weir::output

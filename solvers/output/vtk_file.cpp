@@ -13,8 +13,8 @@ namespace weir::output {
 
 namespace {
 
-/// The file as the first rank writes it; the others hand over what it takes. What goes wrong is told at the end: until then others wait
-/// for their turn.
+/// The file written by rank 0; the other ranks send their parts. Errors are reported at the end, since all ranks must complete the
+/// exchange.
 class Destination {
 public:
     Destination(const std::filesystem::path& path, std::size_t room_for_text) : data_(room_for_text) {
@@ -26,7 +26,7 @@ public:
         attempt([&] { file_->write(bytes); });
         written_ += bytes.size();
     }
-    /// Everybody's parts of an array, in the order of the ranks; nobody is asked where the first has all.
+    /// All ranks' parts of an array, in rank order; no communication where rank 0 has all.
     template <class List>
     void put_parts(const DataArray& array, const List& own) {
         const std::size_t bytes = own.size() * sizeof(own[0]);
@@ -40,7 +40,7 @@ public:
     void put_number(T number) {
         put({reinterpret_cast<const char*>(&number), sizeof number});
     }
-    /// From the first byte of data on.
+    /// Offset from the first byte of data.
     std::size_t position() const { return written_ - data_; }
     void finish(const std::string& text) {
         by_first_rank([&] {
@@ -66,7 +66,7 @@ private:
     std::exception_ptr failure_;
 };
 
-/// Where an array's data are, and between which numbers.
+/// The offset of an array's data, and its extremes.
 struct Placed {
     std::size_t offset = 0;
     Extremes extremes{};
@@ -78,7 +78,7 @@ std::string number_text(double value) {
     return text;
 }
 
-/// Headers are of 32 bits.
+/// Headers are 32-bit numbers.
 std::uint32_t header_number(std::size_t value) {
     if (value > std::numeric_limits<std::uint32_t>::max())
         throw OutputError("a field of 4 GB and more needs output.compression = \"zlib\" or \"lz4\"");
@@ -101,7 +101,7 @@ Placed place(Destination& file, const DataArray& array, Compression compression)
     return placed;
 }
 
-/// What VTK tells of an array in a line, or in some.
+/// VTK's description of an array, in one or several lines.
 std::string array_text(const DataArray& array, const Placed& placed, const std::string& indent, bool with_number) {
     std::string text = indent + "<DataArray type=\"" + array.type + "\" Name=\"" + array.name + '"';
     if (array.components > 1) text += " NumberOfComponents=\"" + std::to_string(array.components) + '"';
@@ -112,7 +112,7 @@ std::string array_text(const DataArray& array, const Placed& placed, const std::
     return text + "/>\n";
 }
 
-/// All that stands before the data; the same number of bytes wherever these are.
+/// The whole text before the data; its length does not depend on their offsets.
 std::string text_of(const VtkFile& file, Compression compression, const std::vector<Placed>& placed) {
     auto next = placed.begin();
     const DataArray time = data_array<double>("TimeValue", 1, Parts::of_first(1), [t = file.time](std::size_t, int) { return t; });

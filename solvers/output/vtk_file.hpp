@@ -1,5 +1,5 @@
-// VTK's XML files of images and of points, with raw appended data, as VTK 9.1's own writers leave them, byte for byte. All ranks write one
-// together: each encodes the blocks of an array that begin in its part, and no rank holds more than its part of one array.
+// VTK's XML files of images and points with raw appended data, byte for byte as written by VTK 9.1. All ranks write one file together: each
+// encodes the blocks of an array that start in its part, and no rank stores more than its part of one array.
 #pragma once
 #include "output/data_array.hpp"
 #include "output/frames.hpp"
@@ -16,16 +16,16 @@ struct VtkElement {
 };
 
 struct VtkFile {
-    std::string type, version;  // what is in it: "ImageData", and the version of that
+    std::string type, version;  // its content, "ImageData", and the version of that format
     std::string attributes, piece;
     real time = 0;
     std::vector<VtkElement> elements{};
 };
 
-/// An attribute with room behind it, as VTK leaves some, which it fills when all is written.
+/// An attribute followed by padding, as reserved by VTK for values known at the end.
 std::string with_room(const std::string& name, const std::string& value, std::size_t room = 20);
 
-/// All ranks call it together. Throws OutputError, on all ranks; what stood under this name stays readable then.
+/// Collective. Throws OutputError, on all ranks; the previous file stays readable then.
 void write(const std::filesystem::path& path, const VtkFile& file, Compression compression);
 
 }  // namespace weir::output

@@ -28,7 +28,7 @@ std::size_t width_of(const std::string& type) {
     return 0;
 }
 
-/// One data array as the header announces it.
+/// A data array as described in the header.
 struct Announced {
     XmlTag tag;
     std::string name, type;
@@ -115,7 +115,7 @@ private:
         if (tuples_of("CellData") > most_tuples) refuse("its extent is \"" + piece_.text("Extent") + '"');
     }
 
-    /// How many tuples each array of an element has.
+    /// Number of tuples of each array of an element.
     std::uint64_t tuples_of(const std::string& element) const {
         if (!file_.image) return element == "PointData" || element == "Points" ? count("NumberOfPoints") : 0;
         std::uint64_t all = 1;
@@ -132,7 +132,7 @@ private:
         for (; next.name == "DataArray"; next = tag()) {
             if (next.kind == XmlTag::closes) refuse("</DataArray> stands alone");
             arrays.push_back(announced(next));
-            if (next.kind == XmlTag::opens) skip_to_end_of("DataArray");  // VTK says more of some
+            if (next.kind == XmlTag::opens) skip_to_end_of("DataArray");  // VTK describes some arrays further
         }
         if (next.name != element || next.kind != XmlTag::closes) refuse("<" + next.name + "> stands where </" + element + "> is expected");
         if (element == "PointData" || element == "CellData") {
@@ -169,7 +169,7 @@ private:
         return n;
     }
 
-    /// The bytes of an array; of a list whose length its header tells, any number of them.
+    /// The bytes of an array; for a list whose length is in its header, any number.
     std::string raw(const Announced& a, std::uint64_t wanted, bool any) const {
         if (a.offset > end_ - first_) refuse("\"" + a.name + "\" lies beyond its end");
         std::size_t at = first_ + a.offset;
@@ -184,7 +184,7 @@ private:
         }
         const std::uint64_t blocks = header_number(at), block = header_number(at), last = header_number(at);
         if (blocks == 0) return any || wanted == 0 ? std::string() : (wrong(0), std::string());
-        constexpr std::uint64_t largest = std::uint64_t{1} << 30, ratio = 1100;  // zlib's is 1032 at most, LZ4's 255
+        constexpr std::uint64_t largest = std::uint64_t{1} << 30, ratio = 1100;  // zlib's maximum is 1032, LZ4's 255
         if (blocks > (end_ - at) / (wide_ ? 8 : 4) || block < 1 || block > largest || last >= block || blocks > 2 * most_bytes / block)
             refuse("the blocks of \"" + a.name + "\" have no size");
         const std::uint64_t all = last > 0 ? (blocks - 1) * block + last : blocks * block;

@@ -28,7 +28,7 @@ void skip_space(std::string_view text, std::size_t& at) {
     while (at < text.size() && is_space(text[at])) ++at;
 }
 
-/// name="value"; no sign has another name in these files.
+/// name="value"; other quotes do not occur in these files.
 void read_attribute(const std::filesystem::path& file, std::string_view text, std::size_t& at, XmlTag& tag) {
     const std::size_t begin = at;
     const std::string name = name_at(text, at);

@@ -1,4 +1,4 @@
-// The tags of a small XML text, one after another: what VTK's files of images and points begin with.
+// Reader of the tags of a small XML text: the headers of VTK's files.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -17,16 +17,16 @@ struct XmlTag {
     std::size_t begin = 0, end = 0;  // in the text
 
     bool has(const std::string& attribute) const { return attributes.count(attribute) != 0; }
-    /// Empty where it has none.
+    /// Empty where there is no such attribute.
     std::string text(const std::string& attribute) const;
 };
 
-/// The first tag at or after `at`, which moves behind it. Text between tags is skipped. Throws BadInput naming `file` and the byte.
+/// The first tag at or after `at`, which is moved behind it. Text between tags is skipped. Throws BadInput naming `file` and the byte.
 XmlTag next_tag(const std::filesystem::path& file, std::string_view text, std::size_t& at);
 
-/// The numbers of an attribute. Throws BadInput where there are not as many, or one is not finite.
+/// The numbers of an attribute. Throws BadInput for a wrong count, or a value that is not finite.
 std::vector<double> numbers_of(const std::filesystem::path& file, const XmlTag& tag, const std::string& attribute, std::size_t count);
-/// A count: whole, and from 0 to 2^53; `otherwise` where the tag has no such attribute.
+/// A count: an integer from 0 to 2^53; `otherwise` where the tag has no such attribute.
 std::uint64_t count_of(const std::filesystem::path& file, const XmlTag& tag, const std::string& attribute, std::uint64_t otherwise = 0);
 
 }  // namespace weir::output

@@ -10,8 +10,8 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// Of a flat liquid: a stretched kernel reaches 3.75 spacings, and one that was pulled inwards for want of neighbours a spacing more. Those
-/// up to 4 layers away must have all of theirs within three; those from 5 on then do not reach the slice.
+/// Layers of copies for a flat liquid: a stretched kernel reaches 3.75 spacings, and one moved inwards for lack of neighbours one more.
+/// Kernels up to 4 layers away must have all their neighbours within three layers; kernels from layer 5 on then do not reach the slice.
 constexpr int layers_beside = 6;
 static_assert(layers_beside >= 4 + far_reach - 1 && 5 - farthest_move >= longest * far_reach);
 
@@ -36,7 +36,7 @@ void add_layers(Cloud& cloud) {
         }
 }
 
-/// One that travels.
+/// A particle in a message.
 struct Carried {
     Vec<3> x{}, v{};
 };
@@ -91,7 +91,7 @@ Components part_of(const FieldSet& fields, const FieldView& field) {
 Brought bring_particles(const Components& position, const Components& velocity, const Domain& domain, std::size_t axis, real band,
                         const std::function<std::span<const int>(real)>& readers) {
     ListsOfRanks<Carried> lists(static_cast<std::size_t>(slabs().ranks()));
-    std::vector<std::size_t> last(lists.size(), position[0].size());  // of each rank, who was given to it last
+    std::vector<std::size_t> last(lists.size(), position[0].size());  // per rank, the last particle sent to it
     for (std::size_t i = 0; i < position[0].size(); ++i) {
         Carried one;
         for (std::size_t a = 0; a < position.size(); ++a) one.x[a] = position[a][i];

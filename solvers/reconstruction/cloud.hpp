@@ -1,5 +1,5 @@
-// Particles that a surface is made of, with their images beyond the sides of the domain. Over ranks each has those that it reads: where
-// they stand, all know alike.
+// The particles of a surface, with their images beyond the sides of the domain. In parallel each rank has those that it reads; the
+// partition is known to all ranks.
 #pragma once
 #include "core/solver.hpp"
 #include "particles/cell_sort.hpp"
@@ -12,11 +12,11 @@
 
 namespace weir::reconstruction {
 
-/// The particles of one instant, and behind them their images beyond walls and sides that repeat.
+/// The particles at one time, followed by their images beyond walls and periodic sides.
 struct Cloud {
     std::array<std::vector<real>, 3> x;  // [m]
-    std::vector<int> source;             // of each image: the particle that it is one of
-    int own = 0;                         // particles that are no images
+    std::vector<int> source;             // particle of each image
+    int own = 0;                         // number of particles, without images
     real spacing = 0;                    // at rest [m]
 
     int count() const { return static_cast<int>(x[0].size()); }
@@ -24,13 +24,13 @@ struct Cloud {
     int particle(int i) const { return i < own ? i : source[static_cast<std::size_t>(i - own)]; }
 };
 
-/// The domain of a liquid; of a flat one it has no sides along z.
+/// The domain of a liquid; in 2D it has no sides along z.
 struct Domain {
     Vec<3> lo{}, hi{};  // [m]
     std::array<bool, 3> periodic{};
     bool flat = false;
 
-    /// f(x of an image along an axis) for those of a particle that is closer to a side than `band`.
+    /// f(x of an image along an axis) for the images of a particle closer to a side than `band`.
     template <class F>
     void for_images(std::size_t axis, real x, real band, const F& f) const {
         const real size = hi[axis] - lo[axis];
@@ -39,15 +39,15 @@ struct Domain {
     }
 };
 
-/// A component each; in 2D two.
+/// One span per component; in 2D two.
 using Components = std::vector<std::span<const real>>;
 
-/// To a cloud whose spacing is known: particles, with images of those within a band of a side: the liquid goes on beyond a wall, or
-/// repeats, so that its surface meets the side as it would meet more liquid. A flat liquid is a slice of one that goes on for ever: its
-/// particles again, a spacing in front and behind, as far as they count.
+/// Fills a cloud of known spacing: particles, with images of those within a band of a side. The liquid continues behind a wall, or repeats,
+/// so that its surface meets the side as if there were more liquid. A 2D liquid is a slice of an infinite one: copies of its particles, one
+/// spacing in front and behind, as far as they contribute.
 void gather(const Components& position, const Domain& domain, real band, Cloud& cloud);
 
-/// What all ranks know of all particles.
+/// Global properties of all particles.
 struct Extent {
     particles::Box box;               // of particles and images
     std::array<real, 3> least, most;  // of particles
@@ -55,17 +55,17 @@ struct Extent {
     bool finite = true;
 };
 Extent extent_of(const Cloud& cloud);
-/// From that of each rank.
+/// Combines those of all ranks.
 Extent extent_of_all(const Extent& own);
 
-/// Of particles of which each rank shows its part, this rank's; of those that all have, as many as any other rank takes.
+/// This rank's components of particles: its part where they are distributed, otherwise an equal share.
 Components part_of(const FieldSet& fields, const FieldView& field);
 
-/// Of particles that each give their own, those that this rank reads, in the order of one process; velocities where there are any.
+/// The particles that this rank reads, received from their owners, in the order of one process; velocities where there are any.
 struct Brought {
     std::array<std::vector<real>, 3> x, v;
 };
-/// readers(x along the axis): the ranks that read what stands there; also where images along that axis do, of those in a band.
+/// readers(x along the axis): the ranks that read particles at x; also applied to images, for particles in a band.
 Brought bring_particles(const Components& position, const Components& velocity, const Domain& domain, std::size_t axis, real band,
                         const std::function<std::span<const int>(real)>& readers);
 

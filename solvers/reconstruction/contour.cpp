@@ -25,12 +25,12 @@ bool can_contour() { return true; }
 
 namespace {
 
-/// The contour of these planes, in numbers of samples: single precision then is good to 1e-5 of a cell in lattices of a hundred.
+/// The contour between these planes, in index coordinates: single precision is then accurate to 1e-5 of a cell for lattices of a hundred.
 vtkSmartPointer<vtkPolyData> contour_of(const Samples& samples, int first, int last) {
     const std::size_t plane = samples.plane(), count = plane * static_cast<std::size_t>(last - first + 1);
     float* const lent = const_cast<float*>(samples.depth.data()) + plane * static_cast<std::size_t>(first);
     vtkNew<vtkFloatArray> values;
-    values->SetArray(lent, static_cast<vtkIdType>(count), 1);  // not given
+    values->SetArray(lent, static_cast<vtkIdType>(count), 1);  // not owned by the array
     vtkNew<vtkImageData> image;
     image->SetExtent(0, samples.n[0] - 1, 0, samples.n[1] - 1, first, last);
     image->GetPointData()->SetScalars(values);
@@ -44,7 +44,7 @@ vtkSmartPointer<vtkPolyData> contour_of(const Samples& samples, int first, int l
     return filter->GetOutput();
 }
 
-/// So many triangles are between these planes.
+/// Number of triangles between these planes.
 std::size_t triangles_between(const Samples& samples, int first, int last) {
     return first < last ? static_cast<std::size_t>(contour_of(samples, first, last)->GetNumberOfPolys()) : 0;
 }
@@ -74,7 +74,7 @@ Piece contour(const Samples& samples, SurfaceMesh& mesh) {
         for (int c = 0; c < 3; ++c)
             mesh.corners[static_cast<std::size_t>(t)][static_cast<std::size_t>(c)] = static_cast<int>(ids[3 * t + c]);
     });
-    const auto start = [&](int layer) {  // filters go through a lattice plane by plane, and number what they find
+    const auto start = [&](int layer) {  // filters process a lattice plane by plane and number results in that order
         std::size_t low = 0, high = mesh.points.size();
         while (low < high) {
             const std::size_t middle = (low + high) / 2;

@@ -1,4 +1,5 @@
-// The zero of samples as triangles, by VTK's flying edges (Schroeder, Maynard & Geveci 2015). The only place that knows VTK's filters.
+// The zero level set of samples as triangles, by VTK's flying edges (Schroeder, Maynard & Geveci 2015). The only file that uses VTK's
+// filters.
 #pragma once
 #include "core/surface_mesh.hpp"
 #include "reconstruction/piece.hpp"
@@ -6,10 +7,10 @@
 
 namespace weir::reconstruction {
 
-/// Whether this build can (WEIR_VTK).
+/// Returns whether this build supports it (WEIR_VTK).
 bool can_contour();
-/// Points and corners of the mesh; the samples at the ends of the lattice must be outside, so that it closes. Of a lattice of which a rank
-/// has some layers: of these and those beside them, numbered from its first point. Throws BadInput without VTK.
+/// Computes points and corners of the mesh. Samples at the ends of the lattice must be outside, so that the mesh is closed. For a
+/// distributed lattice: those of this rank's layers and the adjacent ones, numbered from its first point. Throws BadInput without VTK.
 Piece contour(const Samples& samples, SurfaceMesh& mesh);
 
 }  // namespace weir::reconstruction

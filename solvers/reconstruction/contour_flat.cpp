@@ -7,13 +7,13 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// The point at which each side between two samples is crossed: made when it is first asked for.
+/// The points on the edges between two samples, created on first use.
 class Crossings {
 public:
     Crossings(const Samples& samples, PlaneRange rows, SurfaceMesh& mesh)
         : samples_(samples), rows_(rows), mesh_(mesh), along_{points(), points()} {}
 
-    /// Of the side from sample (i, j) to the next along axis a.
+    /// The point on the edge from sample (i, j) to the next along axis a.
     int point(int i, int j, std::size_t a) {
         int& number = along_[a][samples_.linear(i, j - rows_.begin, 0)];
         if (number >= 0) return number;
@@ -43,7 +43,7 @@ Piece contour_flat(const Samples& samples, SurfaceMesh& mesh) {
     const PlaneRange rows{std::max(0, layers.begin - 2), std::min(samples.n[1], layers.end + 2)};
     Crossings crossings(samples, rows, mesh);
     const auto cell = [&](int i, int j) {
-        // corners and sides against the clock from the lower left
+        // corners and edges counterclockwise from the lower left
         const std::array<float, 4> f{samples(i, j, 0), samples(i + 1, j, 0), samples(i + 1, j + 1, 0), samples(i, j + 1, 0)};
         const auto side = [&](std::size_t s) {
             return s == 0   ? crossings.point(i, j, 0)
@@ -53,7 +53,7 @@ Piece contour_flat(const Samples& samples, SurfaceMesh& mesh) {
         };
         const auto leaves = [&](std::size_t s) { return f[s] > 0 && f[(s + 1) % 4] <= 0; };
         const auto enters = [&](std::size_t s) { return f[s] <= 0 && f[(s + 1) % 4] > 0; };
-        // across a corner of air the liquid goes on where the middle is liquid (the mean of the corners), else it ends in two corners
+        // two opposite corners of liquid are connected where the mean of the corners is liquid; otherwise they are cut off separately
         const bool joined = f[0] + f[1] + f[2] + f[3] > 0;
         for (std::size_t s = 0; s < 4; ++s) {
             if (!leaves(s)) continue;
@@ -63,7 +63,7 @@ Piece contour_flat(const Samples& samples, SurfaceMesh& mesh) {
             mesh.lines.push_back({side(s), side(to)});
         }
     };
-    std::vector<std::size_t> points, lines;  // before each row of cells
+    std::vector<std::size_t> points, lines;  // number before each row of cells
     for (int j = rows.begin; j + 1 < rows.end; ++j) {
         points.push_back(mesh.points.size()), lines.push_back(mesh.lines.size());
         for (int i = 0; i + 1 < samples.n[0]; ++i) cell(i, j);

@@ -12,10 +12,10 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// Taubin 1995: 1/lambda + 1/mu = 0.1 is the pass band; shapes smoother than that keep their size.
+/// Taubin 1995: 1/lambda + 1/mu = 0.1 is the pass band; smoother shapes keep their size.
 constexpr real forward = 0.5, back = -1 / (1 / forward - 0.1);
 
-/// Points around each point: in a closed mesh the end of each directed side; of lines both ends.
+/// The neighbours of each point: in a closed mesh the ends of its directed edges; for lines both ends.
 struct Neighbours {
     std::vector<int> start, list;
     explicit Neighbours(const SurfaceMesh& mesh) : start(mesh.points.size() + 1, 0), list(3 * mesh.corners.size() + 2 * mesh.lines.size()) {
@@ -32,7 +32,7 @@ struct Neighbours {
     }
 };
 
-/// Points of the layers beside this rank's, from their owners.
+/// Halo exchange of the points of the layers adjacent to this rank's.
 void bring_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut& cut) {
     const auto [begin, end] = layers_of(cut, slabs().rank());
     if (begin == end) return;
@@ -87,23 +87,23 @@ void add_normals(SurfaceMesh& mesh) {
 
 namespace {
 
-/// A line into the liquid, from a point of some rank's, and where it is looked at next.
+/// A ray into the liquid from a surface point, and its next sample position.
 struct Ray {
     Vec<3> from, outwards;
     std::size_t point;
     int rank;
     int step;     // from 1
-    real before;  // the samples' value a step before
+    real before;  // value of the samples at the previous step
 };
 
-/// How rays go on, step by step.
+/// Marching of rays, step by step.
 struct March {
     const Samples& samples;
     real step = 0.5 * std::min({samples.spacing[0], samples.spacing[1], samples.spacing[2]});
-    int most = 2 * (samples.n[0] + samples.n[1] + samples.n[2]);  // a line inside a box is no longer than its sides together
+    int most = 2 * (samples.n[0] + samples.n[1] + samples.n[2]);  // upper bound for a line inside the box: the sum of its sides
 
     Vec<3> place(const Ray& ray) const { return ray.from - (ray.step * step) * ray.outwards; }
-    /// How far the ray goes in liquid; -1 where it leaves the layers that are known here, and where it is then.
+    /// Length of the ray inside liquid; -1 where it leaves the layers stored here, with its position.
     real go(Ray& ray, bool knows_all) const {
         for (; ray.step <= most; ++ray.step) {
             const Vec<3> x = place(ray);
@@ -119,13 +119,13 @@ private:
     bool knows(int layer) const { return layer >= samples.layers.begin && layer < samples.layers.end; }
 };
 
-/// How far one has come.
+/// The result of a ray.
 struct Arrived {
     std::size_t point;
     real thickness;
 };
 
-/// Rays that have left this rank's layers go from owner to owner; what they find comes back.
+/// Rays that leave this rank's layers migrate from owner to owner; the results are sent back.
 void go_on_elsewhere(const std::vector<Ray>& left, const March& march, const Cut& cut, std::vector<real>& thickness) {
     const auto ranks = static_cast<std::size_t>(cut.ranks());
     ListsOfRanks<Ray> leaving(ranks);

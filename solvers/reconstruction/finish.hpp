@@ -1,5 +1,5 @@
-// What a contour gets before it is shown: smoothness where there are many particles, normals, and the thickness of the liquid. Over ranks
-// each finishes its own points.
+// Postprocessing of a contour: smoothing where there are many particles, normals, and the thickness of the liquid. In parallel each rank
+// processes its own points.
 #pragma once
 #include "core/surface_mesh.hpp"
 #include "reconstruction/piece.hpp"
@@ -9,15 +9,15 @@
 
 namespace weir::reconstruction {
 
-/// Passes of weighted Laplacian smoothing (Loeschner et al. 2023, eq. 6): each point moves towards the mean of those around it by its
-/// weight. Of each two steps the second goes back a little farther (Taubin 1995), because 25 plain ones as published, on cells of a
-/// spacing, take a tenth of the volume of a sphere of 16 spacings. Weights are of own points. Over ranks, whose planes of samples are cut
-/// so, points beside come from their owners after each step.
+/// Weighted Laplacian smoothing (Loeschner et al. 2023, eq. 6): each point moves towards the mean of its neighbours by its weight. In each
+/// pair of steps the second moves back slightly farther (Taubin 1995): 25 plain steps as published, on cells of one spacing, remove a tenth
+/// of the volume of a sphere of 16 spacings. Weights are those of own points. In parallel, with this partition of the planes of samples,
+/// adjacent points are exchanged after each step.
 void smooth(SurfaceMesh& mesh, const Piece& piece, const std::vector<real>& weight, int passes, const Cut& cut = {});
-/// Of each point: the mean of the triangles around it, by area, or of its two lines, by length.
+/// Normal of each point: area-weighted mean of the adjacent triangles, or length-weighted mean of its two lines.
 void add_normals(SurfaceMesh& mesh);
-/// Along the inward normal from each own point, where the samples become negative. Over ranks, whose planes of samples are cut so, a line
-/// that leaves this rank's goes on where they are known.
+/// Thickness along the inward normal of each own point, up to the point where the samples become negative. In parallel, with this partition
+/// of the planes of samples, a ray that leaves this rank continues on the owner.
 void add_thickness(SurfaceMesh& mesh, const Piece& piece, const Samples& samples, const Cut& cut = {});
 
 }  // namespace weir::reconstruction

@@ -8,7 +8,7 @@ namespace weir::reconstruction {
 
 real volume(const SurfaceMesh& mesh) {
     if (mesh.points.empty()) return 0;
-    const Vec<3> from = mesh.points.front();  // near the surface: less is lost to rounding than from the origin
+    const Vec<3> from = mesh.points.front();  // a point near the surface: less rounding error than with the origin
     real six = 0;
     for (const auto& t : mesh.corners) six += dot(corner(mesh, t, 0) - from, cross(corner(mesh, t, 1) - from, corner(mesh, t, 2) - from));
     if (!mesh.lines.empty()) {
@@ -52,7 +52,7 @@ Topology topology_of_lines(const SurfaceMesh& mesh) {
 
 Topology topology(const SurfaceMesh& mesh) {
     if (!mesh.lines.empty()) return topology_of_lines(mesh);
-    // each directed side once; a closed, oriented surface has each of them once, and its reverse once
+    // every directed edge once; a closed, oriented surface has each of them and its reverse exactly once
     std::vector<std::pair<int, int>> sides;
     sides.reserve(3 * mesh.corners.size());
     std::vector<char> used(mesh.points.size(), 0);

@@ -1,4 +1,4 @@
-// What a scene may say of the surface that its frames show.
+// The options of the surface in a scene's frames.
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
@@ -7,8 +7,8 @@
 
 namespace weir::reconstruction {
 
-/// From a level set as it is; from particles by the distance to their weighted mean (Zhu & Bridson 2005), by stretched kernels (Yu & Turk
-/// 2013), or by their density, whose surface is smoothed where particles are many (Loeschner, Boettcher, Jeske & Bender 2023).
+/// From a level set directly; from particles by the distance to their weighted mean (Zhu & Bridson 2005), by anisotropic kernels (Yu & Turk
+/// 2013), or by their density, smoothed where there are many particles (Loeschner, Boettcher, Jeske & Bender 2023).
 enum class Method { level_set, zhu_bridson, anisotropic, density };
 
 struct Options {
@@ -17,11 +17,11 @@ struct Options {
     int smoothing = 0;  // passes over the mesh
 };
 
-/// What the scene says; nothing where it does not name a surface.
+/// The scene's options; nullopt where it names no surface.
 std::optional<Options> options_of(const scene::Scene& scene);
-/// How far beyond the planes of samples that a rank has it reads particles, to a cell of its sort [spacings].
+/// Range beyond a rank's planes of samples in which it reads particles, rounded to its cells [spacings].
 real read_beside(const Options& options);
-/// By name; throws std::logic_error where there is none.
+/// The method of that name; throws std::logic_error where there is none.
 Method method_named(std::string_view name);
 
 }  // namespace weir::reconstruction

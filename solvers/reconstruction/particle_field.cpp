@@ -10,13 +10,13 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// Samples of a block along each axis: its sums stay in the first-level cache; as many along z, and of a flat liquid along y. Rows have
-/// room for a vector on both sides, so that no particle's row needs to be cut.
+/// Samples of a block along each axis: its sums fit in the first-level cache; the same number along z, and for a 2D liquid along y. Rows
+/// have space for a vector on both sides, so that no particle's row must be clipped.
 constexpr int block_x = 16, block_y = 8, block_z = 8;
 constexpr int lanes = 8, row_length = lanes + block_x + lanes;
 static_assert(block_y == block_z);
 constexpr int rows_of_block = block_y * block_z;
-/// A cell whose particles are at least this part of what a liquid at rest has there is full.
+/// A cell is full if it has at least this fraction of the particles of a liquid at rest.
 constexpr float full_part = 0.5F;
 
 /// Sums at the samples of one block.
@@ -29,7 +29,7 @@ struct BlockSums {
     }
 };
 
-/// First and last sample within `half` of x along an axis, counted from the block's first.
+/// First and last sample within `half` of x along an axis, relative to the block's first.
 struct Span {
     int begin, end;
     bool empty() const { return begin >= end; }
@@ -55,12 +55,12 @@ PlaneRange ParticleField::cells_read(const Samples& samples, PlaneRange planes) 
     if (planes.begin >= planes.end) return {0, 0};
     const int count = samples.n[slowest()], cells = grid_.cells[slowest()];
     const auto at = [&](int plane) { return step_ * static_cast<float>(plane); };
-    // those in reach, and those that are read to measure them
+    // particles within reach, and those needed for their neighbour sums
     PlaneRange read = cells_between(slowest(), at(planes.begin) - outermost() - step_, at(planes.end) + outermost() + step_);
     const float radius = method_ == Method::anisotropic ? static_cast<float>(far_reach) : static_cast<float>(reach);
     const int measured = method_ == Method::zhu_bridson ? 0 : static_cast<int>(std::ceil(radius / cell_width_)) + 1;
     read.begin -= measured, read.end += measured;
-    // those that tell whether a block is deep in the liquid, all of it
+    // all cells that decide whether a block is deep in the liquid
     const int first = planes.begin / block_z * block_z, last = std::min(count, (planes.end + block_z - 1) / block_z * block_z);
     const PlaneRange blocks = cells_between(slowest(), at(first), at(last - 1));
     return {std::max(0, std::min(read.begin, blocks.begin - 1)), std::min(cells, std::max(read.end, blocks.end + 1))};
@@ -91,7 +91,7 @@ float ParticleField::outermost() const {
 
 void ParticleField::sort(const Cloud& cloud) {
     const int plane = grid_.cells[0] * grid_.cells[1];
-    if (flat_)  // its rows of cells are in many layers
+    if (flat_)  // its rows of cells span many layers
         cells_.sort(cloud.coordinates(), cloud.count(), grid_);
     else
         cells_.sort(cloud.coordinates(), cloud.count(), grid_, plane * read_.begin, plane * read_.end);
@@ -106,7 +106,7 @@ void ParticleField::sort(const Cloud& cloud) {
     }
 }
 
-/// A cell is deep where it and all around it are full: what lies in it is inside.
+/// A cell is deep where it and all its neighbours are full: its samples are inside.
 void ParticleField::find_deep_cells() {
     const auto& n = grid_.cells;
     const auto& start = cells_.start();
@@ -139,7 +139,7 @@ std::array<float, 3> ParticleField::high(const Block& block) const {
 }
 
 PlaneRange ParticleField::cells_between(std::size_t axis, float lo, float hi) const {
-    // a hair more: cells were chosen in double precision, and a particle may lie a rounding beyond its cell here
+    // slightly more: cells were chosen in double precision, so a particle may lie beyond its cell by rounding
     constexpr float hair = 1e-3F;
     return {static_cast<int>(std::floor((lo - hair - cell_origin_[axis]) / cell_width_)),
             static_cast<int>(std::floor((hi + hair - cell_origin_[axis]) / cell_width_)) + 1};
@@ -194,7 +194,7 @@ void ParticleField::find_blocks(const Samples& samples) {
                     block.begin[a] = number[a] * length[a];
                     block.end[a] = std::min(samples.n[a], block.begin[a] + length[a]);
                 }
-                const bool inside = is_deep(block);  // over ranks too all of it
+                const bool inside = is_deep(block);  // in parallel for the whole block, too
                 block.begin[cut] = std::max(block.begin[cut], first[cut]), block.end[cut] = std::min(block.end[cut], last[cut]);
                 auto lo = low(block), hi = high(block);
                 for (std::size_t a = 0; a < 3; ++a) lo[a] -= far, hi[a] += far;
@@ -209,7 +209,7 @@ void ParticleField::find_blocks(const Samples& samples) {
 
 void ParticleField::mark_needed(const Block& block) {
     auto lo = low(block), hi = high(block);
-    // a step more: a point of the surface may lie between the block's last sample and the next one
+    // one step more: a surface point may lie between the block's last sample and the next one
     for (std::size_t a = 0; a < 3; ++a) lo[a] -= outermost() + step_, hi[a] += outermost() + step_;
     const CellBox box = cells_in(lo, hi);
     for (int k = box.begin[2]; k < box.end[2]; ++k)
@@ -228,7 +228,7 @@ void ParticleField::measure_particles() {
             for (int i = start[static_cast<std::size_t>(c)]; i < start[static_cast<std::size_t>(c) + 1]; ++i) measure(i);
 }
 
-/// Density, and for stretched kernels the moments, of the neighbours of one particle; in lanes, which are added in their order.
+/// Density, and for anisotropic kernels the moments, of the neighbours of one particle; vectorized, lanes are added in order.
 void ParticleField::measure(int i) {
     const auto at = static_cast<std::size_t>(i);
     const bool moments = method_ == Method::anisotropic;
@@ -267,7 +267,7 @@ void ParticleField::measure(int i) {
     const real volume = std::max(1.0, lonely_density * reach * reach * reach / (bump_norm * total[0]));
     if (!moments) {
         peak_[at] = static_cast<float>(volume * bump_norm / (reach * reach * reach));
-        crowding_[at] = static_cast<float>(total[1] - 1);  // others
+        crowding_[at] = static_cast<float>(total[1] - 1);  // without itself
         return;
     }
     const Moments m{total[2],

@@ -1,5 +1,5 @@
-// How far each sample of a lattice lies inside the liquid that particles stand for: the fields of reference.hpp in single precision, on
-// threads, in blocks of samples. Blocks far from any particle, and blocks among so many that they are inside, are not computed.
+// Signed depth of lattice samples inside the liquid represented by particles: the fields of reference.hpp in single precision, on threads,
+// in blocks of samples. Blocks far from any particle, and blocks deep inside, are not computed.
 #pragma once
 #include "particles/cell_sort.hpp"
 #include "reconstruction/cloud.hpp"
@@ -18,26 +18,26 @@ class ParticleField {
 public:
     /// `flat`: the lattice is one plane, and the cloud has layers on both sides of it.
     explicit ParticleField(Method method, bool flat = false) : method_(method), flat_(flat) {}
-    /// Where the cells of all particles are, which have this box and number, on a lattice that is laid already.
+    /// Sets the cells for particles with this box and number, on an existing lattice.
     void lay(const particles::Box& box, std::int64_t count, real spacing, const Samples& samples);
-    /// Over ranks: the planes of cells whose particles are read by whoever computes these planes of samples, and asks for means between
-    /// them and the next one; and which plane of cells a place is in.
+    /// In parallel: the planes of cells whose particles are read for these planes of samples and for means between them and the next plane;
+    /// and the plane of cells of a point.
     PlaneRange cells_read(const Samples& samples, PlaneRange planes) const;
     int cell_plane(real x) const;
-    /// Fills the own planes of samples from the particles that are read for them. The cloud must live as long as means are asked for.
+    /// Computes the own planes of samples from the particles read for them. The cloud must outlive all calls for means.
     void compute(const Cloud& cloud, Samples& samples);
-    /// The mean over the particles in reach of a point, weighted by their kernels, of their velocity [m/s]; 0 where there is none.
+    /// The kernel-weighted mean of the velocity of the particles within reach of a point [m/s]; 0 without particles.
     Vec<3> velocity_at(const Vec<3>& x, const std::array<std::span<const real>, 3>& velocity) const;
-    /// The same of how crowded they are: a sum over others near, each counted by 1 - (d/reach)^2; a lattice has 12.5. Of `density` only.
+    /// The same mean of their crowding: a sum over neighbours, each weighted by 1 - (d/reach)^2; a lattice has 12.5. Only for `density`.
     real crowding_at(const Vec<3>& x) const;
     std::size_t bytes() const;
-    /// Samples that were computed by the last call.
+    /// Number of samples computed by the last call.
     long computed() const;
 
 private:
     struct Block {
-        std::array<int, 3> begin, end;  // samples that are this rank's
-        float value;                    // where it is not computed
+        std::array<int, 3> begin, end;  // this rank's samples
+        float value;                    // default value
         bool computed;
     };
     struct FloatBlob {
@@ -57,15 +57,15 @@ private:
     void scatter_means(const Block& block, Rows& rows) const;
     template <class Rows>
     void scatter_kernels(const Block& block, Rows& rows) const;
-    /// Cells that meet a box [spacings]; the first and last along each axis, and whether some of the box lies outside all cells.
+    /// Cells that intersect a box [spacings]; the first and last along each axis, and whether a part of the box lies outside all cells.
     struct CellBox {
         std::array<int, 3> begin, end;
         bool beyond;
     };
-    /// Of these [spacings] along an axis.
+    /// The cells between two coordinates [spacings] along an axis.
     PlaneRange cells_between(std::size_t axis, float lo, float hi) const;
     std::size_t slowest() const { return flat_ ? 1 : 2; }
-    /// The number of the cell that a row begins with, among those that are sorted.
+    /// Index of the first cell of a row, among the sorted cells.
     std::size_t row_of(int j, int k) const {
         const auto& n = grid_.cells;
         return (static_cast<std::size_t>(k) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(j)) *
@@ -73,12 +73,12 @@ private:
                static_cast<std::size_t>(cells_.first_cell());
     }
     CellBox cells_in(const std::array<float, 3>& lo, const std::array<float, 3>& hi) const;
-    /// f(first, behind last) for sorted particles in the cells of a box, a run of cells at a time, in the order of the sort.
+    /// f(first, end) for sorted particles in the cells of a box, one run of cells at a time, in sorted order.
     template <class F>
     void for_runs(const CellBox& box, const F& f) const;
     template <class Value>
     void weigh(const Vec<3>& x, const Value& value) const;
-    /// How far a particle's kernel may reach from it [spacings].
+    /// Maximum range of a particle's kernel [spacings].
     float outermost() const;
     std::array<float, 3> low(const Block& block) const;
     std::array<float, 3> high(const Block& block) const;
@@ -93,8 +93,8 @@ private:
     float step_ = 1;                          // between samples [spacings]
     std::array<float, 3> cell_origin_{};      // [spacings]
     float cell_width_ = 1;                    // [spacings]
-    std::array<std::vector<float>, 3> x_;     // sorted, in spacings from the first sample
-    std::vector<char> full_, deep_, needed_;  // cells
+    std::array<std::vector<float>, 3> x_;     // sorted, in spacings relative to the first sample
+    std::vector<char> full_, deep_, needed_;  // per cell
     std::vector<Block> blocks_;
     std::vector<float> peak_, crowding_;  // of each sorted particle, in cells that are needed
     std::vector<FloatBlob> blobs_;

@@ -9,10 +9,11 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// In units of Samples::unit; the next sample is at most 1 on the other side.
+/// In units of Samples::unit; the neighbouring sample is at most 1 on the other side.
 constexpr float nearest_to_zero = 2e-3F;
 
-/// Makes the value change its sign at distance `in` from the inner sample and `out` from the outer one, if the inner one is in the liquid.
+/// Sets the values so that the sign changes at distance `in` from the inner sample and `out` from the outer one, if the inner one is
+/// liquid.
 void cross_between(float& inner, float& outer, float in, float out) {
     if (inner <= 0) return;
     const float wanted = inner * out / in;

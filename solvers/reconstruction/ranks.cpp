@@ -1,5 +1,5 @@
-// A surface that ranks make together. Each samples the lattice on its own planes, from the particles that are read there or from its own
-// planes of the grid, contours its own layers and finishes the points of these.
+// Distributed surface reconstruction. Each rank samples the lattice on its own planes, from the particles read there or from its planes of
+// the grid, contours its own layers and postprocesses their points.
 #include "core/cut_by_work.hpp"
 #include "core/owners.hpp"
 #include "reconstruction/reconstruction.hpp"
@@ -9,7 +9,7 @@
 
 namespace weir::reconstruction {
 
-/// Where the grid is cut; of a grid that all have whole, as many planes to each.
+/// The partition of the grid; for a grid stored whole on all ranks, equal numbers of planes.
 void Reconstruction::cut_by_planes(const FieldSet& fields) {
     const auto axis = static_cast<std::size_t>(samples_.slowest());
     const int planes = samples_.n[axis];
@@ -21,14 +21,14 @@ void Reconstruction::cut_by_planes(const FieldSet& fields) {
     cut_.at = {0};
     for (int rank = 1; rank < grid.ranks(); ++rank) {
         const real x = fields.grid.origin[axis] + fields.grid.spacing[axis] * grid.begin(rank);
-        const bool of_cells = options_.method == Method::level_set;  // sample k stands in the middle of cell k - 1
+        const bool of_cells = options_.method == Method::level_set;  // sample k is the centre of cell k - 1
         const real plane = of_cells ? grid.begin(rank) + 1 : std::floor((x - samples_.first[axis]) / samples_.spacing[axis]);
         cut_.at.push_back(static_cast<int>(std::clamp(plane, 0.0, real(planes))));
     }
     cut_.at.push_back(planes);
 }
 
-/// As many particles to each.
+/// A partition with equal numbers of particles.
 void Reconstruction::cut_by_particles(const Components& position) {
     const auto axis = static_cast<std::size_t>(samples_.slowest());
     const int planes = samples_.n[axis], ranks = slabs().ranks();
@@ -39,10 +39,10 @@ void Reconstruction::cut_by_particles(const Components& position) {
     cut_ = planes < ranks ? cut_of(planes, ranks) : cut_by_work(work, ranks);
 }
 
-/// Particles to those who read the cells where they or images of them stand.
+/// Sends particles to the ranks that read their cells or the cells of their images.
 void Reconstruction::share_particles(const Components& position) {
     const auto axis = static_cast<std::size_t>(samples_.slowest());
-    std::vector<std::vector<int>> readers;  // of each plane of cells
+    std::vector<std::vector<int>> readers;  // per plane of cells
     for (int rank = 0; rank < cut_.ranks(); ++rank) {
         const PlaneRange read = field_.cells_read(samples_, {cut_.begin(rank), cut_.end(rank, samples_.n[axis])});
         readers.resize(std::max(readers.size(), static_cast<std::size_t>(read.end)));
@@ -61,7 +61,7 @@ void Reconstruction::share_particles(const Components& position) {
     velocity_ = views(brought_.v, velocity_.size());
 }
 
-/// A number in cells, on own planes and as far beyond as is looked at.
+/// A cell field, on own planes and on the ghost planes that are read.
 PlaneStore<real> Reconstruction::with_planes_beside(const FieldSet& fields, const FieldView& field) const {
     constexpr int deep = 2;
     const auto axis = static_cast<std::size_t>(samples_.slowest());
@@ -75,7 +75,7 @@ PlaneStore<real> Reconstruction::with_planes_beside(const FieldSet& fields, cons
     return known;
 }
 
-/// At points that smoothing has moved beyond the cuts, whoever knows the liquid there says.
+/// The velocity at points that smoothing has moved beyond the subdomain boundary is computed by the owner.
 void Reconstruction::add_velocity_elsewhere(const std::function<Vec<3>(const Vec<3>&)>& velocity_at) {
     struct Asked {
         Vec<3> x;
@@ -94,7 +94,7 @@ void Reconstruction::add_velocity_elsewhere(const std::function<Vec<3>(const Vec
         for (const Asked& one : list) mesh_.velocity[one.point] = one.x;
 }
 
-/// Without what is beside it; corners and ends are numbered among the points of all ranks.
+/// Removes adjacent layers; corners and ends become global point indices.
 void Reconstruction::keep_own_part() {
     mesh_.first = begins_of_ranks(piece_.points())[static_cast<std::size_t>(slabs().rank())];
     const auto keep = [](auto& list, std::size_t begin, std::size_t end) {

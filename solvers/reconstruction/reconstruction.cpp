@@ -15,12 +15,12 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// Others near that make a particle one of many: a lattice has 12.5 (Loeschner et al. 2023 take 13).
+/// Crowding above which a particle counts as one of many: a lattice has 12.5 (Loeschner et al. 2023 use 13).
 constexpr real crowd = 13;
-/// Markers of a grid along an edge of a cell.
+/// Markers of a grid along the edge of a cell.
 constexpr real markers_a_cell = 2;
 
-/// 0 at 0, 1 at 1, with two derivatives of zero at both (Loeschner et al. 2023, section 3.2).
+/// 0 at 0, 1 at 1, with zero first and second derivatives at both (Loeschner et al. 2023, section 3.2).
 real smoother_step(real s) { return s * s * s * (s * (6 * s - 15) + 10); }
 
 const FieldView* particles_of(const FieldSet& fields) {
@@ -28,7 +28,7 @@ const FieldView* particles_of(const FieldSet& fields) {
     return markers ? markers : fields.find(particle_set_name, "position");
 }
 
-/// A component of a velocity on faces or in cells, or a number in cells, trilinear.
+/// A velocity component on faces or in cells, or a cell field, trilinear.
 real value_at(const FieldView& field, const GridView& grid, std::size_t component, const Vec<3>& x) {
     const auto dim = static_cast<std::size_t>(grid.dim);
     std::array<std::size_t, 3> low{}, n{1, 1, 1};
@@ -68,7 +68,7 @@ Reconstruction::Reconstruction(const Options& options, const scene::Scene& scene
         domain_.lo[a] = endless ? -infinity : lower[static_cast<std::size_t>(a)];
         domain_.hi[a] = endless ? infinity : domain_.lo[a] + size[static_cast<std::size_t>(a)];
     }
-    if (!scene.has("grid.periodic")) return;  // a study of walls alone
+    if (!scene.has("grid.periodic")) return;  // a study of walls only
     const auto repeat = [&]<int D>(const geometry::Sides<D>& sides) {
         for (int a = 0; a < D; ++a) domain_.periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
     };
@@ -166,11 +166,11 @@ void Reconstruction::from_particles(const FieldSet& fields) {
     add_velocity(fields);
 }
 
-/// Images stand as far beyond a side.
+/// Images extend this far beyond a side.
 real Reconstruction::band() const { return (reach + options_.cell) * cloud_.spacing; }
 
-/// Markers part by chance, and leave holes of a spacing or two inside the liquid. A level set beside them, which sees no holes smaller than
-/// a cell, tells that there is liquid: what lies a cell deep is inside.
+/// Random motion of markers leaves holes of one or two spacings inside the liquid. A level set, which does not resolve holes smaller than a
+/// cell, shows the liquid there: samples one cell deep are set inside.
 void Reconstruction::fill_holes(const FieldSet& fields) {
     const FieldView* phi = fields.find(level_set_name);
     if (!phi) return;
@@ -196,7 +196,7 @@ void Reconstruction::lay_samples(const Extent& all) {
     const real step = options_.cell * cloud_.spacing;
     if (domain_.flat) samples_.spacing[0] = step, lay_plane();
     for (std::size_t a = 0; a < (domain_.flat ? 2U : 3U); ++a) {
-        const real beyond = 1.5 * cloud_.spacing;  // no surface is farther from all particles: a plane's is half a spacing away
+        const real beyond = 1.5 * cloud_.spacing;  // bound of the distance from surface to particles: half a spacing for a plane
         const real lo = domain_.lo[a], hi = domain_.hi[a];
         const auto number = [&](real x) { return std::floor((x - lo) / step - 0.5); };
         const real first = number(std::max(lo, all.least[a] - beyond));
@@ -226,13 +226,13 @@ void Reconstruction::make_contour() {
     add_thickness(mesh_, piece_, samples_, cut_);
 }
 
-/// Many particles near: smooth. Few: a drop or a film keeps its shape.
+/// Smooths where many particles are near; drops and films keep their shape.
 void Reconstruction::smooth_by_crowding() {
     const auto timed = passes_.time("smooth");
     std::vector<real> weight(piece_.points());
     parallel_for(0, static_cast<int>(weight.size()), [&](int p) {
         const Vec<3>& x = mesh_.points[piece_.begin + static_cast<std::size_t>(p)];
-        bool at_side = false;  // its points stay where they are
+        bool at_side = false;  // its points are not moved
         for (int a = 0; a < 3; ++a) at_side = at_side || std::min(x[a] - domain_.lo[a], domain_.hi[a] - x[a]) < 1e-3 * samples_.unit;
         weight[static_cast<std::size_t>(p)] = at_side ? 0 : smoother_step(std::min(1.0, field_.crowding_at(x) / crowd));
     });

@@ -1,4 +1,4 @@
-// The liquid's surface as a closed mesh of triangles, or in 2D as closed lines, from a level set or from particles, at any moment of a run.
+// The liquid's surface as a closed mesh of triangles, or in 2D as closed lines, from a level set or from particles, at any time of a run.
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
@@ -20,11 +20,11 @@ namespace weir::reconstruction {
 
 class Reconstruction {
 public:
-    /// Of liquid in the domain, among the solids of a scene.
+    /// For liquid in the domain and among the solids of a scene.
     Reconstruction(const Options& options, const scene::Scene& scene);
-    /// The surface of what these fields show at time t [s]; without a triangle or a line where there is no liquid.
+    /// The surface of these fields at time t [s]; empty where there is no liquid.
     const SurfaceMesh& make(const FieldSet& fields, real t);
-    /// The same by all ranks together, each its part: points and triangles or lines follow each other in their order.
+    /// The same, collective, each rank its part: points and triangles or lines are concatenated in rank order.
     const SurfaceMesh& make_part(const FieldSet& fields, real t);
 
     const SurfaceMesh& mesh() const { return mesh_; }
@@ -45,7 +45,7 @@ private:
     void smooth_by_crowding();
     void add_velocity(const FieldSet& fields);
 
-    // Over ranks (ranks.cpp)
+    // In parallel (ranks.cpp)
     void cut_by_planes(const FieldSet& fields);
     void cut_by_particles(const Components& position);
     void share_particles(const Components& position);
@@ -60,19 +60,19 @@ private:
     geometry::Solids<2> flat_solids_;
     geometry::Solids<3> solids_;
     bool in_parts_ = false;
-    Cut cut_;  // of the lattice's planes, over ranks
+    Cut cut_;  // of the lattice's planes, in parallel
     Cloud cloud_;
-    Components velocity_;  // of the cloud's particles, where they have one
-    Brought brought_;      // over ranks, what these are of
+    Components velocity_;  // of the cloud's particles, if any
+    Brought brought_;      // in parallel, the storage of these
     ParticleField field_;
     Samples samples_;
-    std::vector<real> across_;  // velocity through a flat liquid: none
+    std::vector<real> across_;  // velocity normal to the plane of a 2D liquid: zero
     Piece piece_;
     SurfaceMesh mesh_;
     Passes passes_;
 };
 
-/// Where the scene names a surface, who makes it; nothing otherwise.
+/// The reconstruction of a scene's surface; nullptr where the scene names none.
 std::unique_ptr<Reconstruction> reconstruction_of(const scene::Scene& scene);
 
 }  // namespace weir::reconstruction

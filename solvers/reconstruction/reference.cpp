@@ -8,7 +8,7 @@ namespace weir::reconstruction {
 
 namespace {
 
-/// m/rho: that of the liquid at rest, but more for particles so alone that their sum would not reach the level of the surface.
+/// m/rho: that of the liquid at rest, or more for isolated particles whose sum would not reach the level of the surface.
 real volume_of(const std::vector<Vec<3>>& all, const Vec<3>& x) {
     real density = 0;
     for (const Vec<3>& y : all) density += bump_norm / (reach * reach * reach) * bump(dot(x - y, x - y) / (reach * reach));
@@ -41,12 +41,11 @@ real squared(const Blob& blob, const Vec<3>& d) {
     return dot(s, s);
 }
 
-/// Points on the plane over a unit cell of the lattice, of which a value is the mean.
+/// Points of a unit cell of the lattice over which a value is averaged.
 constexpr int phases = 4;
-/// Particles across and down the half space: what lies farther from its middle than the reach of a neighbour's neighbour counts for
-/// nothing.
+/// Particles across and down the half space: those farther from its middle than the reach of a neighbour's neighbour do not contribute.
 constexpr int half_width = 8, layers = 8;
-/// Depths of a profile: those between which a sample's is cut, and some more for those where all values are equal.
+/// Depths of a profile: the clamping range of samples, plus a margin where values are constant.
 constexpr real highest = -1.5, lowest = 1.5, step = 1.0 / 32;
 
 Profile find_profile(Method method, bool flat) {
@@ -76,7 +75,7 @@ const Profile& profile_once(bool flat) {
 Profile::Profile(real first_depth, real step_of_depth, const std::vector<real>& values) {
     const auto middle = static_cast<std::size_t>(std::lround(-first_depth / step_of_depth));
     const bool rising = values[middle + 1] > values[middle];
-    // from the surface outwards and inwards as far as the values go on in their direction
+    // from the surface outwards and inwards, as far as the values are monotone
     std::size_t first = middle, last = middle;
     while (first > 0 && std::isfinite(values[first - 1]) && (values[first] > values[first - 1]) == rising &&
            values[first] != values[first - 1])

@@ -1,5 +1,5 @@
-// What the three reconstructions from particles are, in double precision and by sums over all particles: the definition that the fast one
-// is compared with, and that knows where each puts the surface of a liquid at rest.
+// The definition of the three particle reconstructions, in double precision with sums over all particles: the reference for the fast one.
+// It also determines the surface level of a liquid at rest.
 #pragma once
 #include "core/types.hpp"
 #include "reconstruction/kernel.hpp"
@@ -11,13 +11,13 @@
 
 namespace weir::reconstruction {
 
-/// What a field is below and above a plane: how its value tells the depth. The plane is the surface of a half space filled by a cubic
-/// lattice, half a spacing above its uppermost layer; the value is the mean over the plane.
+/// A field as a function of the depth below a plane surface: maps its value to a depth. The plane is the surface of a half space filled by
+/// a cubic lattice, half a spacing above its uppermost layer; values are averaged over the plane.
 class Profile {
 public:
-    /// Of values at equal steps of depth, from the first, that never turn back.
+    /// From values at equal steps of depth, starting at the first; they must be monotone.
     Profile(real first_depth, real step, const std::vector<real>& values);
-    /// Below the surface [spacings]; the outermost known one beyond.
+    /// Depth below the surface [spacings]; clamped to the outermost known values.
     template <class T>
     T depth(T value) const {
         const T at = std::min(std::max((value - static_cast<T>(least_)) * static_cast<T>(per_step_), T(0)), static_cast<T>(steps));
@@ -35,11 +35,11 @@ private:
 
 class ReferenceField {
 public:
-    /// Positions in particle spacings; of a flat liquid in all layers.
+    /// Positions in particle spacings; for a 2D liquid in all layers.
     ReferenceField(Method method, std::vector<Vec<3>> positions, bool flat = false);
-    /// zhu_bridson: the distance to the weighted mean (infinite where no particle is in reach); otherwise the sum of kernels.
+    /// zhu_bridson: the distance to the weighted mean (infinite without particles within reach); otherwise the sum of kernels.
     real value(const Vec<3>& x) const;
-    /// How far x lies inside, as Samples::depth: where a plane surface would have the value of x.
+    /// Depth of x inside the liquid, as in Samples::depth: the depth at which a plane surface would have the value of x.
     real depth(const Vec<3>& x) const;
 
 private:
@@ -49,8 +49,7 @@ private:
     std::vector<Blob> blobs_;
 };
 
-/// Found by sums, once. A flat liquid is a slice, through its particles, of one that goes on for ever: the same layer again at each
-/// spacing.
+/// Computed once. A 2D liquid is a slice, through its particles, of an infinite one: the same layer at each spacing.
 const Profile& profile_of(Method method, bool flat);
 
 }  // namespace weir::reconstruction

@@ -5,7 +5,7 @@
 namespace weir::reconstruction {
 
 namespace {
-constexpr int beyond = 2;  // planes that are held beyond a cut: what is next to a point of the first or last layer
+constexpr int beyond = 2;  // ghost planes on each side: the neighbours of points in the first and last layer
 }
 
 void Samples::make_room(const Cut& cut) {

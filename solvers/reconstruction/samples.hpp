@@ -1,4 +1,4 @@
-// A scalar on a lattice: how far each point lies inside the liquid. Its zero is the surface.
+// A scalar on a lattice: depth inside the liquid. Its zero level set is the surface.
 #pragma once
 #include "core/parallel.hpp"
 #include "core/plane_store.hpp"
@@ -10,25 +10,25 @@
 
 namespace weir::reconstruction {
 
-/// Of a lattice whose planes are cut so, the layers that a rank owns: layer k is between plane k and the next.
+/// The layers that a rank owns, for this partition of the lattice's planes: layer k lies between plane k and the next.
 inline PlaneRange layers_of(const Cut& cut, int rank) {
     return {std::min(cut.begin(rank), cut.planes() - 1), std::min(cut.end(rank, cut.planes()), cut.planes() - 1)};
 }
 
-/// Planes of the slowest axis may be shared by ranks: each owns those between two cuts, and holds two more beyond either.
+/// Planes of the slowest axis may be distributed: each rank owns a slab and stores two ghost planes on each side.
 struct Samples {
     std::array<int, 3> n{0, 0, 0};  // along each axis, x fastest
-    Vec<3> first{};                 // where the first one stands [m]
+    Vec<3> first{};                 // position of the first one [m]
     std::array<real, 3> spacing{1, 1, 1};
     real unit = 1;            // [m]
-    PlaneStore<float> depth;  // inside the liquid, in units; negative outside, cut at -1 and 1
+    PlaneStore<float> depth;  // inside the liquid, in units; negative outside, clamped to [-1, 1]
     PlaneRange own{0, 0}, held{0, 0}, layers{0, 0};
 
-    /// Room for all of them; over ranks, where they are cut, for those that this one holds.
+    /// Allocates all of them; in parallel, with this partition, those that this rank stores.
     void make_room(const Cut& cut = {});
-    /// Over ranks: those beyond, from whoever owns them.
+    /// In parallel: fills the ghost planes from their owners.
     void bring(const Cut& cut);
-    /// Of space z, of a plane of samples y.
+    /// In 3D z, for a plane of samples y.
     int slowest() const { return n[2] > 1 ? 2 : 1; }
     std::size_t plane() const { return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(slowest() == 2 ? n[1] : 1); }
     std::size_t linear(int i, int j, int k) const {
@@ -41,17 +41,17 @@ struct Samples {
     Vec<3> position(int i, int j, int k) const {
         return {{first[0] + spacing[0] * i, first[1] + spacing[1] * j, first[2] + spacing[2] * k}};
     }
-    /// Between which samples along an axis a place is, the outermost beyond the lattice: the lower one and how far on.
+    /// The two samples around a point along an axis (the outermost beyond the lattice): the lower one and the interpolation weight.
     struct Between {
         std::size_t low;
         real part;
     };
     Between between(std::size_t axis, real x) const;
-    /// The layer in which a place is.
+    /// The layer that contains a point.
     int layer_of(const Vec<3>& x) const;
-    /// Whether what is next to a place is known here: it is among this rank's layers, or by them.
+    /// Returns whether the samples around a point are stored here: in or next to this rank's layers.
     bool is_near(const Vec<3>& x) const;
-    /// Trilinear; the nearest sample's beyond the outermost.
+    /// Trilinear; constant beyond the outermost samples.
     real at(const Vec<3>& x) const;
 };
 

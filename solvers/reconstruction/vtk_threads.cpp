@@ -1,4 +1,4 @@
-// Compiled as C++17: VTK 9.1's vtkSMPTools.h is no C++20 (a constructor is named with its template arguments).
+// Compiled as C++17: VTK 9.1's vtkSMPTools.h is not valid C++20 (it names a constructor with template arguments).
 #include "reconstruction/vtk_threads.hpp"
 
 #include <vtkSMPTools.h>

@@ -1,10 +1,10 @@
-// How many threads VTK's filters take.
+// The number of threads of VTK's filters.
 #pragma once
 #include <functional>
 
 namespace weir::reconstruction {
 
-/// Does the work with filters that take at most so many threads.
+/// Runs the work with filters limited to `threads` threads.
 void with_vtk_threads(int threads, const std::function<void()>& work);
 
 }  // namespace weir::reconstruction

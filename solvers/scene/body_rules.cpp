@@ -34,14 +34,14 @@ bool has_all(const Table& t, std::initializer_list<const char*> keys) {
     return std::all_of(keys.begin(), keys.end(), [&](const char* key) { return t.has(key); });
 }
 
-/// The smallest box around a segment thickened by a radius (or a point: from = to) has no point in the domain.
+/// Returns whether the bounding box of a segment with a radius (or a point: from = to) does not intersect the domain.
 bool segment_misses(const std::vector<double>& from, const std::vector<double>& to, double radius, const Domain& domain) {
     for (std::size_t d = 0; d < std::min({from.size(), to.size(), domain.min.size()}); ++d)
         if (std::max(from[d], to[d]) + radius <= domain.min[d] || std::min(from[d], to[d]) - radius >= domain.max[d]) return true;
     return false;
 }
 
-/// Behind its plane lies no corner of the domain.
+/// Returns whether no corner of the domain lies behind the plane.
 bool half_space_misses(const Table& plane, const Domain& domain) {
     const auto &point = plane.numbers("point"), &normal = plane.numbers("normal");
     double deepest = 0;

@@ -1,4 +1,4 @@
-// Scenes made in code, as the text of a scene file.
+// Scenes constructed in code, as the text of a scene file.
 #include "scene/scene.hpp"
 
 #include <algorithm>

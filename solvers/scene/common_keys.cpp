@@ -1,4 +1,4 @@
-// Schema of the keys that every scene has. Units are SI. Nothing is switched on by default.
+// Schema of the keys common to all scenes. Units are SI. Nothing is enabled by default.
 #include "scene/schema.hpp"
 
 namespace weir::scene {

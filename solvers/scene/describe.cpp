@@ -61,7 +61,7 @@ std::string variant_text(const Variant& variant) {
     return out;
 }
 
-/// A key without its name, by itself: with its nested keys, and the names of its variants.
+/// A key without its name: with its nested keys, and the names of its variants.
 std::string topic_key_text(const Key& key) {
     std::string out = key_text(key, 0).substr(key.name.size());
     if (key.selector.empty() || variants_of(key).empty()) return out;
@@ -105,7 +105,7 @@ std::string solvers_with(const std::vector<SolverSchema>& solvers, const std::st
     return (names.size() == 1 ? "solver " : "solvers ") + quote_all(names);
 }
 
-/// Collects everything that bears the topic's name, by itself or as the last part of a path; each text once.
+/// Collects everything named like the topic, alone or as the last part of a path; each text once.
 class Finder {
 public:
     explicit Finder(std::string_view topic) : topic_(topic) {}

@@ -1,7 +1,7 @@
-// TOML to tree, by toml++. The only file that sees it: its header takes seconds to compile.
-#define TOML_EXCEPTIONS 0          // errors come back as values, and are ours to word
+// TOML to tree, by toml++. The only file that includes it: its header takes seconds to compile.
+#define TOML_EXCEPTIONS 0          // errors are returned as values and reworded here
 #define TOML_HEADER_ONLY 1         // no shared library to depend on
-#define TOML_MAX_NESTED_VALUES 64  // SourceText refuses less
+#define TOML_MAX_NESTED_VALUES 64  // SourceText rejects deeper nesting
 #include "scene/document.hpp"
 
 #include "scene/source_text.hpp"
@@ -11,8 +11,8 @@
 #else
 #include <toml++/impl/preprocessor.h>
 #endif
-// A text may break what toml++ asserts, such as "[ {", which is no key: it has a message for that behind its assertion. Without these lines
-// a build with assertions ends there, and one of clang without them may assume what is not so.
+// Invalid text may violate toml++'s assertions, such as "[ {", which is not a key; it has an error message behind the assertion. Without
+// these lines a build with assertions aborts there, and a clang build without them may optimize on a false assumption.
 #undef TOML_ASSERT
 #undef TOML_ASSERT_ASSUME
 #define TOML_ASSERT(expr) static_assert(true)

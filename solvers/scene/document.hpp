@@ -1,4 +1,4 @@
-// A TOML text as a tree in which every key and value knows its place. Knows syntax only; what keys mean is the schema's business.
+// A TOML text as a tree in which every key and value has its position. Syntax only; the schema defines the meaning of keys.
 #pragma once
 #include "scene/scene.hpp"
 
@@ -32,24 +32,24 @@ struct Member {
     Node value;
 };
 
-/// The tree, and what is wrong with the text itself. After a mistake that stays on its own line the rest is read as if that line were
-/// empty, so that later mistakes are found too; `complete` is false then, and keys may be missing only because of it.
+/// The tree, and the syntax errors of the text. A line with an error is treated as empty and reading continues, so that later errors are
+/// also reported. `complete` is then false, and keys may be missing only because of it.
 struct Document {
     Node root;
     std::vector<Problem> problems;
     bool complete = true;
-    bool readable = true;  // false: the text could not be read to its end, and nothing should be concluded from the tree
+    bool readable = true;  // false: the text could not be read to its end, and the tree must not be checked further
 };
 
 Document parse_document(std::string_view source, const std::string& file);
-/// A TOML value by itself; false, with a message and its place behind "v = ", where it is none.
+/// Parses a single TOML value; returns false, with a message and its position after "v = ", if it is invalid.
 bool parse_value(std::string_view value, Node& node, std::string& error, Place& where);
-/// The value of an override, its places in "key=value"; false, and why, where it is none.
+/// The value of an override, with positions in "key=value"; returns false, with the reason, if it is invalid.
 bool override_value(const Override& change, int number, Node& value, std::vector<Problem>& problems);
-/// "key=value" laid over the tree; tables on the way to the key are made where they are missing.
+/// Applies "key=value" to the tree; missing tables on the path are created.
 void apply_override(Node& root, const Override& change, int number, std::vector<Problem>& problems);
 
-/// A longer text is refused; far above any scene that people write, and half an hour of what a hand does in one that is recorded.
+/// Longer texts are rejected; far above any hand-written scene, or half an hour of recorded interactive forcing.
 inline constexpr std::size_t max_source_bytes = std::size_t{1} << 23;
 
 }  // namespace weir::scene

@@ -51,7 +51,7 @@ constexpr std::array<Function2, 5> functions_of_two{{
     {"mod", [](real a, real b) { return a - b * std::floor(a / b); }},
 }};
 
-/// muParser's messages name its own callbacks and operators; these say what a scene's author did.
+/// Rewords muParser's messages, which name its own callbacks and operators, in terms of the scene's text.
 std::string told(const mu::Parser::exception_type& e) {
     const std::string& token = e.GetToken();
     switch (e.GetCode()) {
@@ -69,7 +69,7 @@ std::string told(const mu::Parser::exception_type& e) {
     }
 }
 
-/// A formula gives a value and changes none: muParser's assignment is no word of it.
+/// Rejects muParser's assignment: a formula returns a value and changes none.
 void refuse_assignment(std::string_view text) {
     const std::string_view pairs = "=<>!";
     for (std::size_t i = 0; i < text.size(); ++i)
@@ -83,7 +83,7 @@ void refuse_assignment(std::string_view text) {
 }  // namespace
 
 struct Formula::Compiled {
-    std::mutex one_at_a_time;  // muParser reads variables where they are bound
+    std::mutex one_at_a_time;  // muParser reads variables at their bound addresses
     std::vector<real> values;
     mu::Parser parser;
 };
@@ -134,7 +134,7 @@ Formula formula_at(const Scene& scene, std::string_view path, const std::vector<
         Problem p = scene.problem(
             path, fmt::format("{}: {}", path, bad.what()),
             fmt::format("{} of {}; {}", variables.size() == 1 ? "a formula" : "formulas", fmt::join(variables, ", "), Formula::words()));
-        // the text begins behind its quotation mark; where it is written otherwise (""" or an escape), the whole value is underlined
+        // the text begins after its quotation mark; in other notations (""" or an escape) the whole value is underlined
         if (p.place.column > 0 && p.place.override_number < 0 && text.find_first_of("\n\t\\\"") == std::string::npos)
             p.place.column += 1 + bad.at, p.width = bad.width;
         scene.refuse({p});

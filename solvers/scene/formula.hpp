@@ -14,23 +14,23 @@
 
 namespace weir::scene {
 
-/// What is wrong with a formula, and where: `at` counts its characters from 0.
+/// An error in a formula and its position: `at` counts characters from 0.
 struct BadFormula : std::runtime_error {
     BadFormula(int at_, int width_, const std::string& what) : std::runtime_error(what), at(at_), width(width_) {}
     int at, width;
 };
 
-/// Threads may ask it at once, and wait for one another; a copy is the same formula.
+/// Thread-safe by a lock: concurrent calls wait for one another; a copy is the same formula.
 class Formula {
 public:
     Formula() = default;
     /// Throws BadFormula. `variables` in the order in which values are given.
     Formula(std::string_view text, const std::vector<std::string>& variables);
-    /// NaN or infinity where the formula has no value. One value for each variable; more are not looked at. Throws std::logic_error where
+    /// NaN or infinity where the formula has no value. One value per variable; further ones are ignored. Throws std::logic_error where
     /// there are fewer.
     real operator()(std::span<const real> values) const;
     bool empty() const { return compiled_ == nullptr; }
-    /// What a formula may say, for hints and manuals.
+    /// The vocabulary of formulas, for hints and manuals.
     static const std::string& words();
 
 private:
@@ -38,13 +38,13 @@ private:
     std::shared_ptr<Compiled> compiled_;
 };
 
-/// The variant "formula" of a field at the start: a formula of place, the text at the key `value`.
+/// The variant "formula" of an initial field: a function of position, with its text at the key `value`.
 Variant formula_variant(const char* unit);
 /// That formula. NaN or infinity where it has no value.
 template <int D>
 std::function<real(const Vec<D>&)> formula_of_place(const Scene& scene, std::string_view path);
 
-/// The formula that stands at a key of type text; a mistake in it is refused with the place of the mistake.
+/// Reads a formula from a key of type text; throws BadScene with the position of an error.
 Formula formula_at(const Scene& scene, std::string_view path, const std::vector<std::string>& variables);
 
 }  // namespace weir::scene

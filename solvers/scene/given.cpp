@@ -12,12 +12,12 @@ bool has_common_variants(const Key& key) {
     const auto& variants = variants_of(key);
     return !key.selector.empty() && !variants.empty() && (find_variant(key, "box") != nullptr || key.variants_from == &motions);
 }
-/// "emitters" for its own keys, "<box>" for those of the shape that it is.
+/// "emitters" for its own keys, "<box>" for those of its shape.
 std::string of_variant(const Key& key, const std::string& schema, const std::string& variant) {
     return has_common_variants(key) ? "<" + variant + ">" : schema + "<" + variant + ">";
 }
 
-/// Goes down a table and the keys that may stand in it.
+/// Walks through a table and its allowed keys.
 class Walk {
 public:
     explicit Walk(std::vector<GivenKey>& out) : out_(out) {}
@@ -38,7 +38,7 @@ private:
             out_.push_back({path, schema, key.doc, around.was_read(key.name)});
         }
     }
-    /// A table, with the keys of its variant where it chooses one.
+    /// A table, with the keys of the selected variant, if any.
     void chosen(const Table& t, const Key& key, const std::string& path, const std::string& schema) {
         table(t, key.keys, path, schema);
         if (key.selector.empty() || !t.has(key.selector)) return;
@@ -76,7 +76,7 @@ void list_keys(const std::vector<Key>& keys, const std::string& schema, std::vec
     }
 }
 
-/// Keys of the run itself rather than of the solver: who writes frames reads them, after the start.
+/// Keys of the run instead of the solver: the frame writers read them after the start.
 bool is_read_by_writers(const std::string& path) {
     const auto known = {"title", "solver", "dim", "output.fields", "output.faces", "output.precision", "output.compression"};
     return std::find(known.begin(), known.end(), path) != known.end() || path.starts_with("output.surface");

@@ -1,4 +1,4 @@
-// What a scene says, key by key, and whether anybody has read it: what nobody reads is refused, so nothing is ignored without a word.
+// The keys that a scene gives, and whether they were read: unread keys are rejected, so that no key is silently ignored.
 #pragma once
 #include "scene/scene.hpp"
 
@@ -7,18 +7,18 @@
 
 namespace weir::scene {
 
-/// A value that a scene gives, not a default.
+/// A value given in a scene, not a default.
 struct GivenKey {
     std::string path;    // in the scene: "emitters[0].velocity", "sides.x_min.temperature"
-    std::string schema;  // in the schema: "emitters.velocity", "sides.x_min<wall>.temperature"; "effects.viscosity" for naming it
+    std::string schema;  // in the schema: "emitters.velocity", "sides.x_min<wall>.temperature"; "effects.viscosity" for the table itself
     std::string doc;
     bool read = false;
 };
 std::vector<GivenKey> given_keys(const Scene& scene, const SolverSchema& schema);
-/// All that a scene of this solver may say, as GivenKey::schema names it; shapes and motions, which contain themselves and read the same
-/// for every solver, once each: "<box>.min".
+/// All keys allowed for this solver, in the notation of GivenKey::schema. Shapes and motions, which are recursive and common to all
+/// solvers, are listed once: "<box>.min".
 std::vector<std::string> every_key(const SolverSchema& schema);
-/// What is wrong with a scene that gives keys which nobody has read since Scene::forget_reading.
+/// The problems of given keys that were not read since Scene::forget_reading.
 std::vector<Problem> ignored_keys(const Scene& scene, const SolverSchema& schema);
 
 }  // namespace weir::scene

@@ -1,10 +1,10 @@
-// The effect "gravity" as a scene writes it, the same for every solver that has it.
+// The schema of the effect "gravity", common to all solvers that have it.
 #pragma once
 #include "scene/schema.hpp"
 
 namespace weir::scene {
 
-/// `doc`: what it does to this solver's water.
+/// `doc`: its description for this solver.
 Variant gravity_effect(std::string doc);
 
 }  // namespace weir::scene

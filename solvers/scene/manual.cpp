@@ -1,4 +1,4 @@
-// docs/scene.md: one table of keys a section, one section a top-level key, then shapes, motions, solvers and their effects.
+// docs/scene.md: one table of keys per section, one section per top-level key, then shapes, motions, solvers and their effects.
 #include "scene/describe.hpp"
 #include "scene/reader.hpp"
 
@@ -20,7 +20,7 @@ std::string row(const Key& key, const std::string& path) {
     return fmt::format("| `{}` | {} | {} | {}{}{} |\n", path, escaped(value_text(key)), escaped(absent), escaped(key.doc), dim, steers);
 }
 
-/// Keys one by one; those of plain nested tables by their dotted names.
+/// One row per key; keys of nested tables without variants by their dotted names.
 std::string rows(const std::vector<Key>& keys, const std::string& path) {
     std::string out;
     for (const Key& key : keys) {
@@ -50,7 +50,7 @@ std::string variants_section(const Key& key, const std::string& level) {
 
 bool has_own_section(const Key& key) { return key.variants_from == &shapes || key.variants_from == &motions; }
 
-/// The variants of a key's nested keys ("sides", "initial"): once each, though several keys may share them.
+/// The variants of a key's nested keys ("sides", "initial"): each once, even if several keys share them.
 std::string nested_variants(const Key& key) {
     std::string out;
     const std::vector<Variant>* last = nullptr;
@@ -75,7 +75,7 @@ std::string top_section(const Key& key) {
     return out;
 }
 
-/// Variants that a solver adds, as a list: name, meaning, keys.
+/// Variants added by a solver, as a list: name, meaning, keys.
 std::string choice_list(const OwnKeys::Choice& choice) {
     std::string paths;
     for (const auto& path : choice.paths) paths += (paths.empty() ? "`" : ", `") + path + "`";

@@ -11,7 +11,7 @@ namespace weir::scene {
 
 int edit_distance(std::string_view a, std::string_view b) {
     const auto letter = [](std::string_view s, std::size_t i) { return std::tolower(static_cast<unsigned char>(s[i])); };
-    std::array<std::vector<int>, 3> row;  // of the letters i - 2, i - 1, i of a
+    std::array<std::vector<int>, 3> row;  // for the letters i - 2, i - 1, i of a
     for (auto& r : row) r.assign(b.size() + 1, 0);
     for (std::size_t j = 0; j <= b.size(); ++j) row[2][j] = static_cast<int>(j);
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -29,7 +29,7 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// "rotate" and "rotation": nearly all of the shorter word begins the longer one.
+/// "rotate" and "rotation": the longer word starts with most of the shorter one.
 bool same_beginning(std::string_view a, std::string_view b) {
     const std::size_t shorter = std::min(a.size(), b.size());
     std::size_t same = 0;
@@ -40,7 +40,7 @@ bool same_beginning(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& names) {
-    constexpr std::size_t longest = 64;  // a longer word is no slip of the finger
+    constexpr std::size_t longest = 64;  // a longer word is not a typo
     if (word.empty() || word.size() > longest) return {};
     std::string best;
     int best_distance = 1 + static_cast<int>((std::max<std::size_t>(word.size(), 3)) / 3);

@@ -1,4 +1,4 @@
-// Names that a user may have meant.
+// Suggestions for misspelt names.
 #pragma once
 #include <algorithm>
 #include <string>
@@ -11,7 +11,7 @@ namespace weir::scene {
 /// (Damerau 1964; Levenshtein 1966; the "optimal string alignment" variant). Letters' case costs nothing.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The name nearest to `word`, if it is near enough to be meant: at most one mistake in three letters. Empty: none.
+/// The name nearest to `word`, if it is close enough: at most one mistake per three letters. Empty: none.
 std::string nearest(std::string_view word, const std::vector<std::string>& names);
 
 /// `; did you mean "x"?` or nothing.

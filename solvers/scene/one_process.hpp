@@ -1,4 +1,4 @@
-// What solvers do not share among ranks, refused by its key and in the same words whoever refuses it.
+// Rejects keys that are not supported in parallel, with the same message for all solvers.
 #pragma once
 #include "scene/scene.hpp"
 

@@ -1,5 +1,5 @@
-// `--set key=value`: a path of keys and list indices, and a TOML value, laid over the scene's tree before it is checked. Of a list
-// `bodies[:]=12` keeps the first twelve.
+// `--set key=value`: a path of keys and list indices and a TOML value, applied to the scene's tree before it is checked. `bodies[:]=12`
+// keeps the first twelve entries of a list.
 #include "scene/document.hpp"
 #include "scene/names.hpp"
 #include "scene/reader.hpp"
@@ -21,12 +21,12 @@ struct Step {
     int column = 0;  // in "key=value"
 };
 
-/// "[:]": the value is how many entries of the list stay.
+/// "[:]": the value is the number of entries to keep.
 constexpr int how_many = -2;
 
 bool is_key_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; }
 
-/// "solids[0].centre" as steps; an error message and its column, or nothing.
+/// Splits "solids[0].centre" into steps; returns an error message and its column, or an empty text.
 std::string split(std::string_view path, std::vector<Step>& steps, int& column) {
     constexpr std::size_t max_steps = 16;
     std::size_t i = 0;
@@ -64,7 +64,7 @@ bool is_bare_word(std::string_view value) {
            value != "false" && value != "inf" && value != "nan" && std::all_of(value.begin(), value.end(), is_key_letter);
 }
 
-/// Every node of an override's value stands in the override, at a column of "key=value".
+/// Sets the position of every node of an override's value: a column of "key=value".
 void stamp(Node& node, int number, int offset) {
     const auto moved = [&](Place p) { return Place{0, std::max(1, p.column + offset), number}; };
     node.place = moved(node.place);
@@ -113,14 +113,14 @@ bool override_value(const Override& change, int number, Node& value, std::vector
         value.text = change.value;
         value.place = {0, value_column, number};
     } else if (parse_value(change.value, value, error, where)) {
-        stamp(value, number, value_column - 5);  // it was parsed behind "v = "
+        stamp(value, number, value_column - 5);  // it was parsed after "v = "
     } else {
         return refuse(std::max(value_column, where.column + value_column - 5), error);
     }
     return true;
 }
 
-/// Keeps the first entries of a list; what is wrong with that, or nothing.
+/// Keeps the first entries of a list; returns an error message, or an empty text.
 std::string cut(Node& list, const std::string& path, const Node& keep) {
     if (list.kind != Node::Kind::list) return fmt::format("{} is {}, not a list", path, found(list));
     const auto entries = static_cast<std::int64_t>(list.list.size());
@@ -158,7 +158,7 @@ void apply_override(Node& root, const Override& change, int number, std::vector<
             at = &member->value;
             path += (path.empty() ? "" : ".") + step.key;
         } else {
-            if (at->kind == Node::Kind::table && at->members.empty()) at->kind = Node::Kind::list;  // made by this path
+            if (at->kind == Node::Kind::table && at->members.empty()) at->kind = Node::Kind::list;  // created by this path
             if (at->kind != Node::Kind::list) return refuse(step.column, fmt::format("{} is {}, not a list", path, found(*at)));
             if (step.index > static_cast<int>(at->list.size())) return refuse(step.column, beyond_list(path, at->list.size()));
             if (step.index == static_cast<int>(at->list.size())) at->list.push_back(new_table(place));

@@ -53,7 +53,7 @@ void Reader::fill(const Node& node, const Allowed& allowed, const std::string& p
             absent(*key, node, join(path, key->name), path, out);
 }
 
-/// An unknown key of this table was reported with the question whether this one was meant: that it is missing too is no news.
+/// Returns whether an unknown key of this table was reported with this one as a suggestion: it is then not reported as missing.
 bool Reader::misspelt(const Node& node, const Allowed& allowed, const Key& key) const {
     std::vector<std::string> names;
     for (const Key* k : allowed.keys) names.push_back(k->name);
@@ -62,7 +62,7 @@ bool Reader::misspelt(const Node& node, const Allowed& allowed, const Key& key) 
                                        [&](const Member& m) { return !known_name(m.key) && nearest(m.key, names) == key.name; });
 }
 
-/// A key that the scene does not give: its default, a table full of defaults, or a problem.
+/// A key missing in the scene: its default, a table of defaults, or a problem.
 void Reader::absent(const Key& key, const Node& around, const std::string& path, const std::string& owner_path, Table& out) {
     if (key.required) {
         if (!complete_) return;
@@ -151,7 +151,7 @@ std::optional<Value> Reader::scalar(const Node& node, const Key& key, const std:
     return std::nullopt;
 }
 
-/// Whatever it is, but a table; lists are of numbers or of texts.
+/// Any value except a table; lists contain numbers or texts.
 std::optional<Value> Reader::any(const Node& node, const Key& key, const std::string& path) {
     using Kind = Node::Kind;
     const auto as = [&](Type type) {
@@ -207,7 +207,7 @@ std::optional<Table> Reader::table_of(const Node& node, const Key& key, const st
     return table(node, key.keys, path);
 }
 
-/// A table that says what it is: { shape = "sphere", ... }; or only its name, as a text.
+/// A table with a selector: { shape = "sphere", ... }; or only its name, as a text.
 std::optional<Table> Reader::chosen(const Node& node, const Key& key, const std::string& path) {
     const Node* name = &node;
     if (node.kind == Node::Kind::table) {
@@ -260,7 +260,7 @@ std::optional<Value> Reader::tables(const Node& node, const Key& key, const std:
         Key one = key;
         one.type = Type::table;
         auto t = table_of(node.list[i], one, fmt::format("{}[{}]", path, i));
-        out.push_back(t ? std::move(*t) : Table{});  // an empty one in place of a bad one: rules speak of entries by index
+        out.push_back(t ? std::move(*t) : Table{});  // an empty table replaces an invalid one: rules refer to entries by index
     }
     if (key.required && node.list.empty()) report(node.place, fmt::format("{} is an empty list; it needs at least one entry", path));
     return out;

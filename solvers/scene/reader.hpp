@@ -1,4 +1,4 @@
-// A tree of TOML against the schema: every value checked, every default filled in, every problem kept with its place.
+// Checks a TOML tree against the schema: every value is checked, every default is filled in, every problem is stored with its position.
 #pragma once
 #include "scene/document.hpp"
 
@@ -11,7 +11,8 @@ namespace weir::scene {
 
 class Reader {
 public:
-    /// dim 0: not known, 2 and 3 are both accepted. `complete` false: lines of the file could not be read, so a missing key is no news.
+    /// dim 0: unknown, 2 and 3 are both accepted. `complete` false: some lines of the file could not be read, so missing keys are not
+    /// reported.
     Reader(std::string file, int dim, bool complete, std::vector<Problem>& problems)
         : file_(std::move(file)),
           folder_(std::make_shared<std::filesystem::path>(std::filesystem::path(file_).parent_path())),
@@ -19,21 +20,21 @@ public:
           complete_(complete),
           problems_(problems) {}
 
-    /// `solvers` and `solver` word the messages about keys and effects that only other solvers have.
+    /// `solvers` and `solver` are used in messages about keys and effects of other solvers only.
     void know(const std::vector<SolverSchema>& solvers, std::string solver) { solvers_ = &solvers, solver_ = std::move(solver); }
 
-    /// A whole file.
+    /// Reads a whole file.
     Table root(const Node& node, const std::vector<Key>& keys);
     Table table(const Node& node, const std::vector<Key>& keys, const std::string& path);
-    /// One value by itself; nothing, and why, where it is not what the key takes.
+    /// Reads a single value; nullopt, with a problem, where the key does not accept it.
     std::optional<Value> one(const Node& node, const Key& key, const std::string& path) { return value(node, key, path); }
 
 private:
-    /// The keys that may stand in one table: its own, and those of the variant that it chose.
+    /// The keys allowed in one table: its own, and those of the selected variant.
     struct Allowed {
         std::vector<const Key*> keys;
-        const Key* owner = nullptr;        // the key whose value the table is, if it has variants
-        const Variant* variant = nullptr;  // what was chosen
+        const Key* owner = nullptr;        // the key of the table, if it has variants
+        const Variant* variant = nullptr;  // the selected one
         std::string name() const { return variant ? variant->name : std::string(); }
     };
 
@@ -72,11 +73,11 @@ private:
     std::string solver_;
 };
 
-/// "a list of 2 numbers [m]", "true or false", ...: what a key asks for.
+/// "a list of 2 numbers [m]", "true or false", ...: the type required by a key.
 std::string expected(const Key& key, int dim);
-/// "greater than 0 m", "between 0 and 1"; empty where everything is allowed.
+/// "greater than 0 m", "between 0 and 1"; empty without bounds.
 std::string allowed_range(const Key& key);
-/// "the text \"64\"", "a list of 3 entries", ...: what a value is.
+/// "the text \"64\"", "a list of 3 entries", ...: a value in words.
 std::string found(const Node& node);
 
 }  // namespace weir::scene

@@ -1,4 +1,4 @@
-// What the reader says about each kind of mistake: what was found, what is allowed, what may have been meant.
+// The reader's message for each kind of error: what was found, what is allowed, and a suggestion.
 #include "scene/names.hpp"
 #include "scene/reader.hpp"
 
@@ -176,7 +176,7 @@ void Reader::unknown_key(const Member& member, const Allowed& allowed, const std
            known(names));
 }
 
-/// The scene's solver, where it is one that has no use for the key.
+/// The scene's solver, if it does not use the key.
 const SolverSchema* Reader::without(std::string_view path) const {
     if (!solvers_) return nullptr;
     for (const SolverSchema& s : *solvers_)
@@ -184,7 +184,7 @@ const SolverSchema* Reader::without(std::string_view path) const {
     return nullptr;
 }
 
-/// A key that stands in another table ("viscosity" at the top is fluid.viscosity); empty where there is none.
+/// A key that belongs to another table ("viscosity" at the top level is fluid.viscosity); empty where there is none.
 std::string Reader::place_elsewhere(const std::string& key) const {
     if (!root_keys_) return {};
     for (const Key& table : *root_keys_) {

@@ -1,4 +1,4 @@
-// A scene's problems as the user sees them: place and message, the line, an underline with what is known.
+// A scene's problems as shown to the user: position and message, the line, an underline with known names.
 #include "scene/names.hpp"
 #include "scene/source_text.hpp"
 
@@ -10,15 +10,15 @@ namespace weir::scene {
 namespace {
 
 constexpr int tab_width = 4;
-constexpr int shown_width = 110;  // of a long line, so many characters around the mistake
+constexpr int shown_width = 110;  // characters shown around the error in a long line
 
-/// Part of a line as it can be shown, and the underline's first column and width in it.
+/// The shown part of a line, and the underline's first column and width in it.
 struct Excerpt {
     std::string text;
     int column = 0, width = 0;
 };
 
-/// Control characters and broken UTF-8 are no business of the user's terminal.
+/// Returns whether a character may be printed: no control characters or invalid UTF-8.
 bool is_shown(std::string_view letter) {
     return sequence_length(letter) == letter.size() && static_cast<unsigned char>(letter[0]) >= 0x20 && letter[0] != 0x7F;
 }
@@ -77,7 +77,7 @@ std::string report(const std::vector<Problem>& problems, std::string_view source
 }
 
 std::vector<Problem> in_order(std::vector<Problem> problems) {
-    const auto rank = [](const Problem& p) {  // the file from top to bottom, then overrides as they were given
+    const auto rank = [](const Problem& p) {  // the file from top to bottom, then overrides in order
         return std::array<int, 3>{p.place.override_number, p.place.line, p.place.column};
     };
     std::stable_sort(problems.begin(), problems.end(), [&](const Problem& a, const Problem& b) { return rank(a) < rank(b); });

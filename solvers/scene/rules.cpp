@@ -20,7 +20,7 @@ Domain domain_of(const Table& root) {
     return domain;
 }
 
-/// Cells are indexed by int. Whether they fit into memory only their solver knows (sim/foretold.hpp).
+/// Cells are indexed by int. The memory limit is checked elsewhere, because it depends on the solver (sim::require_memory).
 void check_cells(const Table& root, const Report& report) {
     constexpr double most = std::numeric_limits<std::int32_t>::max();
     if (!root.has("grid.cells")) return;
@@ -30,7 +30,7 @@ void check_cells(const Table& root, const Report& report) {
         report(root.place("grid.cells"), fmt::format("grid.cells makes {:.3g} cells; at most {:.0f} can be numbered", cells, most));
 }
 
-/// A cell must be wider than the rounding of its own coordinates, with three digits to spare.
+/// A cell must be wider than the rounding of its own coordinates, with a margin of three digits.
 void check_resolution(const Table& root, const Domain& domain, const Report& report) {
     if (!domain.known() || !root.has("grid.cells") || root.numbers("grid.cells").size() != domain.min.size()) return;
     for (std::size_t d = 0; d < domain.min.size(); ++d) {
@@ -50,7 +50,7 @@ void check_time(const Table& root, const Report& report) {
                                                   number_text(root.number("time.max_dt"))));
 }
 
-/// Liquid and emitters make fluid only where they reach into the domain.
+/// Liquid and emitters must reach into the domain.
 void check_reach(const Table& shape, const std::string& path, const Domain& domain, const Report& report) {
     if (domain.known() && misses(shape, domain))
         report(shape.place("shape"), fmt::format("{} lies outside the domain, so it adds no fluid", path),

@@ -1,4 +1,4 @@
-// Rules that tie several keys of a scene together: both ends of a periodic axis, corners of a box, the number of cells.
+// Rules about several keys of a scene: both ends of a periodic axis, corners of a box, the number of cells.
 #pragma once
 #include "scene/scene.hpp"
 
@@ -7,11 +7,11 @@
 
 namespace weir::scene {
 
-/// Adds what is wrong to `problems`; and makes equal what may be said in two ways: `grid.periodic` and sides of kind "periodic" agree
-/// afterwards, and a side that is "open" is an "outflow". dim 0: not known. Values that the schema refused are absent and are skipped.
+/// Adds violations to `problems`, and normalizes alternative notations: afterwards `grid.periodic` and sides of kind "periodic" agree, and
+/// a side that is "open" is an "outflow". dim 0: unknown. Values rejected by the schema are absent and are skipped.
 void check_rules(Table& root, int dim, const std::string& file, std::vector<Problem>& problems);
 
-/// Where a rule reports. Paths as in messages; the place is that of the value.
+/// Collects the violations of rules. Paths as in messages; the position is that of the value.
 class Report {
 public:
     Report(const std::string& file, std::vector<Problem>& problems) : file_(file), problems_(problems) {}
@@ -24,7 +24,7 @@ private:
     std::vector<Problem>& problems_;
 };
 
-/// Corners of the domain [m]; empty where the grid is not known.
+/// Corners of the domain [m]; empty where the grid is unknown.
 struct Domain {
     std::vector<double> min, max;
     bool known() const { return !min.empty(); }
@@ -33,7 +33,7 @@ struct Domain {
 void check_sides(Table& root, int dim, const Report& report);
 void check_shape(const Table& shape, const std::string& path, int dim, const Report& report);
 void check_motion(const Table& motion, const std::string& path, const Report& report);
-/// The shape and the domain have no point in common, by their bounding boxes.
+/// Returns whether shape and domain do not intersect, by their bounding boxes.
 bool misses(const Table& shape, const Domain& domain);
 void check_probes(const Table& root, const Domain& domain, int dim, const Report& report);
 

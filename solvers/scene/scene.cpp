@@ -1,4 +1,4 @@
-// From a file to a checked scene: text, tree, overrides, schema, rules; every problem found on the way is reported at once.
+// From a file to a checked scene: text, tree, overrides, schema, rules; all problems found are reported together.
 #include "scene/scene.hpp"
 
 #include "core/words.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 std::string set_text(const Override& o) { return fmt::format("--set {}={}", o.key, o.value); }
 
-/// Problems of overrides name the override in place of the file.
+/// Problems in overrides name the override instead of the file.
 void name_overrides(std::vector<Problem>& problems, const std::vector<Override>& overrides) {
     for (Problem& p : problems)
         if (p.place.override_number >= 0) p.file = set_text(overrides[static_cast<std::size_t>(p.place.override_number)]);
@@ -29,7 +29,7 @@ void name_overrides(std::vector<Problem>& problems, const std::vector<Override>&
 const SolverSchema* chosen_solver(const Node& root, const std::string& file, const std::vector<SolverSchema>& solvers,
                                   std::vector<Problem>& problems) {
     const Member* member = root.member("solver");
-    if (!member || member->value.kind != Node::Kind::text) return nullptr;  // missing, or no text: the reader says so
+    if (!member || member->value.kind != Node::Kind::text) return nullptr;  // missing, or not a text: the reader reports it
     std::vector<std::string> names;
     for (const SolverSchema& s : solvers) {
         if (s.name == member->value.text) return &s;
@@ -42,7 +42,7 @@ const SolverSchema* chosen_solver(const Node& root, const std::string& file, con
     return nullptr;
 }
 
-/// 2 or 3; 0 where the scene does not say, or says something else, which is reported.
+/// 2 or 3; 0 where the scene's value is missing or invalid, which is reported.
 int dimension(const Node& root, const std::string& file, const SolverSchema* solver, std::vector<Problem>& problems) {
     const Member* member = root.member("dim");
     if (!member || member->value.kind != Node::Kind::integer) return 0;
@@ -111,7 +111,7 @@ std::string read_text(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path, failed))
         throw BadInput(failed ? fmt::format("{}: cannot be read: {}", name, failed.message())
                               : fmt::format("{}: there is no such file", name));
-    const std::string text = first_bytes_of(path, max_source_bytes + 1);  // one more, to see that it is too long
+    const std::string text = first_bytes_of(path, max_source_bytes + 1);  // one byte more, to detect that it is too long
     if (text.empty()) throw BadInput(fmt::format("{}: the file is empty", name));
     return text;
 }
@@ -153,7 +153,7 @@ Scene Scene::without_effect(std::string_view name) const {
 
 namespace {
 
-/// Whether the number, or any of the list, is not zero. What is absent is.
+/// Returns whether the number, or any entry of the list, is nonzero; false for an absent key.
 bool acts(const Table& table, const std::string& key) {
     const Value* value = table.find(key);
     if (!value) return false;
@@ -162,8 +162,8 @@ bool acts(const Table& table, const std::string& key) {
     return table.number(key) != 0;
 }
 
-/// Whether the scene says what goes along with the effect. Where it does not, the effect may take the place of what a scheme has built in,
-/// and zero switches that off.
+/// Returns whether the scene has the key that accompanies the effect. Without it, the effect may replace something built into a scheme, and
+/// zero strength disables that.
 bool says(const Scene& scene, const std::string& along_with) {
     const auto equals = along_with.find(" = ");
     if (equals == std::string::npos) return true;

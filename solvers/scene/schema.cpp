@@ -1,4 +1,4 @@
-// How a solver's keys lie over the common ones, and the small look-ups that every user of the schema needs.
+// Overlaying a solver's keys on the common ones, and look-ups in the schema.
 #include "scene/schema.hpp"
 
 #include "scene/names.hpp"
@@ -35,7 +35,7 @@ std::vector<Variant> overlay_variants(std::vector<Variant> base, const std::vect
     return base;
 }
 
-/// What `more` states replaces what `base` states; what it leaves unsaid stays.
+/// Fields set in `more` replace those of `base`; the others are kept.
 Key overlay_key(const Key& base, const Key& more) {
     if (base.type != more.type) return more;
     Key key = base;
@@ -58,7 +58,7 @@ Key overlay_key(const Key& base, const Key& more) {
     return key;
 }
 
-/// Takes the path out of the keys, and out of those of their variants.
+/// Removes the path from the keys, and from those of their variants.
 void leave_out(std::vector<Key>& keys, std::string_view path) {
     const std::string_view part = first_part(path);
     if (path.empty()) {

@@ -1,4 +1,4 @@
-// Schema of shapes and of prescribed motions. A sphere is a circle in 2D; a shape of shapes contains this same list again.
+// Schema of shapes and of prescribed motions. A sphere is a circle in 2D; a compound shape contains this same list recursively.
 #include "scene/schema.hpp"
 
 namespace weir::scene {

@@ -1,4 +1,4 @@
-// Rules about the sides of the domain, and the two ways of saying that an axis is periodic.
+// Rules about the sides of the domain, and the two notations of a periodic axis.
 #include "scene/names.hpp"
 #include "scene/rules.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 std::string side_name(int axis, int end) { return fmt::format("sides.{}_{}", axis_name(axis), end ? "max" : "min"); }
 std::string kind_of(const Table& root, int axis, int end) { return root.text_or(side_name(axis, end) + ".kind", ""); }
 
-/// `grid.periodic` names the axis: its sides may say so too, but nothing else.
+/// `grid.periodic` names the axis: its sides may repeat that, but have no other kind.
 void make_periodic(Table& root, int axis, const Report& report) {
     for (int end = 0; end < 2; ++end) {
         Table* side = root.find_table(side_name(axis, end));
@@ -52,7 +52,7 @@ void check_periodic(Table& root, int dim, const Report& report) {
     if (grid && (grid->has("periodic") || !periodic.empty())) grid->set("periodic", periodic, grid->place("periodic"));
 }
 
-/// A wall that moved through its own plane would squeeze the domain.
+/// Rejects a wall that moves normal to its plane: it would change the domain's volume.
 void check_moving_wall(const Table& side, int axis, const std::string& name, const Report& report) {
     if (side.text_or("kind", "") != "moving_wall" || !side.has("velocity")) return;
     const auto& velocity = side.numbers("velocity");

@@ -43,7 +43,7 @@ std::size_t byte_of_column(std::string_view line, int column) {
 
 int token_width(std::string_view line, int column) {
     const std::string_view rest = line.substr(byte_of_column(line, column));
-    if (rest.empty() || rest[0] == '{') return 1;  // a table in braces may be long, and what is wrong with it is that it is there
+    if (rest.empty() || rest[0] == '{') return 1;  // a table in braces may be long, and the error is its presence
     std::size_t end = 0;
     int depth = 0;
     char quote = 0;
@@ -73,9 +73,9 @@ int token_width(std::string_view line, int column) {
     return std::max(1, count_characters(token));
 }
 
-/// One pass over the text, knowing strings, comments and brackets: where lines begin and what is open there. It also finds what must not
-/// reach the parser: depth that would make recursion deep, and letters outside texts and comments that it has no defined answer to
-/// (toml++ 3.3 calls std::unreachable on some).
+/// One pass over the text that recognizes strings, comments and brackets: finds the starts of lines and what is open there. It also finds
+/// text that must not reach the parser: nesting that would make recursion too deep, and characters outside texts and comments for which its
+/// behaviour is undefined (toml++ 3.3 calls std::unreachable on some).
 class SourceText::Scan {
 public:
     explicit Scan(SourceText& text) : to_(text), s_(text.text_) {}

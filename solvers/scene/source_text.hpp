@@ -1,5 +1,5 @@
-// The text of a scene as lines and columns of characters: what messages show, and just enough of TOML's lexical rules (strings,
-// comments, brackets) to know where statements begin and end.
+// The text of a scene as lines and columns of characters, for messages, with the part of TOML's lexical rules (strings, comments, brackets)
+// needed to find the beginnings and ends of statements.
 #pragma once
 #include "scene/scene.hpp"
 
@@ -18,11 +18,11 @@ public:
     std::string_view line(int number) const;  // 1 is the first; without its line end; empty beyond the last
     int line_count() const { return static_cast<int>(starts_.size()); }
 
-    /// What keeps this from being text at all: too long, not UTF-8, control characters, absurd nesting.
+    /// The reason why this is not a valid text: too long, not UTF-8, control characters, excessive nesting.
     std::optional<Problem> unreadable() const;
-    /// Empties a line that is a statement by itself (not a table's header, nothing open before or after it); false if it is not.
+    /// Clears a line that is a complete statement (not a table header, nothing open before or after it); returns false otherwise.
     bool blank_statement(int line);
-    /// The bracket or text that is still open where a line begins; line 0: none.
+    /// The bracket or text that is still open at the start of a line; line 0: none.
     Place open_at(int line) const;
     /// The same in the middle of a line, for brackets.
     Place open_at(Place place) const;
@@ -44,14 +44,14 @@ private:
 
 /// Characters of UTF-8 text (bytes that are not continuations).
 int count_characters(std::string_view text);
-/// Length of the UTF-8 sequence that begins a text (Unicode 15, table 3-7), 0 where it is not valid.
+/// Length of the UTF-8 sequence at the start of a text (Unicode 15, table 3-7), 0 where it is invalid.
 std::size_t sequence_length(std::string_view text);
-/// The byte at which a 1-based column begins.
+/// The byte offset of a 1-based column.
 std::size_t byte_of_column(std::string_view line, int column);
-/// Length in characters of the word, text, list or table that begins at a column; at least 1, never beyond the line.
+/// Length in characters of the word, text, list or table that starts at a column; at least 1, never beyond the line.
 int token_width(std::string_view line, int column);
 
-/// A message of the TOML parser in our words, pointing at what the user would change.
+/// Rewords a message of the TOML parser, with the position of the text to change.
 Problem word_syntax_error(std::string description, Place place, const SourceText& text);
 
 }  // namespace weir::scene

@@ -12,7 +12,7 @@
 namespace weir::scene {
 namespace {
 
-/// The steerable keys under `keys` of which the scene has the tables around.
+/// The steerable keys under `keys` whose tables exist in the scene.
 void collect(const std::vector<Key>& keys, const Table& table, const std::string& path, std::vector<std::string>& out) {
     for (const Key& key : keys) {
         const std::string full = path.empty() ? key.name : path + "." + key.name;
@@ -27,7 +27,7 @@ void collect(const std::vector<Key>& keys, const Table& table, const std::string
     }
 }
 
-/// Why a key that is not marked is not.
+/// The reason why a key is not steerable.
 std::string reason(std::string_view path) {
     const std::string_view top = path.substr(0, path.find_first_of(".["));
     for (const char* key : {"solver", "dim", "grid"})
@@ -112,7 +112,7 @@ void check_changes(const Table& root, int dim, const std::string& file, const So
     Table then = root;
     for (std::size_t i = 0; i < tables.size(); ++i) {
         const Table& t = tables[i];
-        if (!t.has("time") || !t.has("key") || !t.has("value")) continue;  // the reader has said so
+        if (!t.has("time") || !t.has("key") || !t.has("value")) continue;  // reported by the reader
         const auto at = [&](const char* key, std::string message, std::string hint = "") {
             problems.push_back({.file = file, .place = t.place(key), .message = std::move(message), .hint = std::move(hint)});
         };

@@ -13,7 +13,7 @@ Key surface_cell_key() {
             .max = 2};
 }
 
-/// Passes of weighted smoothing that take the bumps of single particles out of samples one spacing apart.
+/// Default number of smoothing passes, which remove the bumps of single particles from samples one spacing apart.
 constexpr std::int64_t usual_smoothing = 5;
 
 std::vector<Variant> surfaces_of_particles() {

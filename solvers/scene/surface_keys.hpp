@@ -1,10 +1,10 @@
-// "output.surface", as solvers of liquids with a free surface offer it: what reads it is reconstruction/options.cpp.
+// "output.surface", for solvers of liquids with a free surface; read by reconstruction/options.cpp.
 #pragma once
 #include "scene/schema.hpp"
 
 namespace weir::scene {
 
-/// The key "output" with this one in it, to be laid over the common one: for a solver of particles, and for one that has a level set (and
+/// The key "output" with this one, to be overlaid on the common one: for particle solvers, and for solvers with a level set (and markers).
 /// markers).
 Key surface_key_of_particles();
 Key surface_key_of_level_set(bool markers);

@@ -1,4 +1,4 @@
-// The TOML parser's complaints in our words. What it says that is not known here is passed on as it is.
+// Rewords the TOML parser's messages. Unknown ones are passed on unchanged.
 #include "scene/names.hpp"
 #include "scene/source_text.hpp"
 
@@ -27,7 +27,7 @@ std::string_view key_of(std::string_view line) {
     return equals == std::string_view::npos ? std::string_view{} : trimmed(line.substr(0, equals));
 }
 
-/// An earlier line with this key under the same header; 0 where none is seen.
+/// An earlier line with this key under the same header; 0 where there is none.
 int first_given(const SourceText& text, int line, std::string_view key) {
     if (key.empty()) return 0;
     for (int n = line - 1; n >= 1; --n) {
@@ -51,7 +51,7 @@ Problem given_twice(const std::string& name, Place place, const SourceText& text
     return problem;
 }
 
-/// "grid.periodic = ..." below "grid = { ... }": a table in braces takes no more keys.
+/// "grid.periodic = ..." below "grid = { ... }": keys cannot be added to an inline table.
 Problem added_to_braces(Place place, const SourceText& text) {
     const auto key = key_of(text.line(place.line));
     const std::string name(key.substr(0, key.find('.')));
@@ -61,13 +61,13 @@ Problem added_to_braces(Place place, const SourceText& text) {
     return problem;
 }
 
-/// What stands at a place: up to a comma, a bracket, a comment or the end of the line.
+/// The text at a position: up to a comma, a bracket, a comment or the end of the line.
 std::string_view phrase_at(std::string_view line, std::size_t begin) {
     const auto end = std::min(line.find_first_of(",=#[]{}\"'", begin), line.size());
     return trimmed(line.substr(begin, end - begin));
 }
 
-/// A value that is a bare word: the parser stops in its middle, the message shows all of it.
+/// A value without quotes: the parser stops in its middle, the message shows all of it.
 Problem bare_word(Place place, const SourceText& text) {
     const auto line = text.line(place.line);
     std::size_t begin = std::min(byte_of_column(line, place.column), line.size());
@@ -86,7 +86,7 @@ Problem bare_word(Place place, const SourceText& text) {
     return problem;
 }
 
-/// The word at a place is a key: '=' follows it.
+/// Returns whether the word at a position is a key: '=' follows it.
 bool is_key_at(Place place, const SourceText& text) {
     auto rest = text.line(place.line);
     rest = rest.substr(std::min(byte_of_column(rest, place.column), rest.size()));
@@ -100,7 +100,7 @@ char letter_at(Place place, const SourceText& text) {
     return at < line.size() ? line[at] : '\0';
 }
 
-/// From the last quote of the line that opens a text, to its end.
+/// From the opening quote to the end of the line.
 Problem open_quote(Place place, const SourceText& text) {
     const auto line = text.line(place.line);
     std::size_t opened = 0;

@@ -1,4 +1,4 @@
-// Look-ups by path in a checked table. A miss here is a mistake in our code, not in the scene.
+// Look-ups by path in a checked table. A miss is a programming error, not an error in the scene.
 #include "scene/scene.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace weir::scene {
 namespace {
 
-/// "solids[0].centre" gives "solids", 0, "centre".
+/// "solids[0].centre" is split into "solids", 0, "centre".
 struct Step {
     std::string_view key;
     int index = -1;  // into a list of tables

@@ -1,4 +1,4 @@
-// A table as text again: what a run understood of its scene, for run.json and for tests that read it back.
+// A table as text: the parsed scene, for run.json and for tests that read it back.
 #include "scene/names.hpp"
 #include "scene/scene.hpp"
 
@@ -9,7 +9,7 @@
 namespace weir::scene {
 namespace {
 
-/// A string in quotes by the rules that TOML's basic strings and JSON share.
+/// A quoted string by the rules common to TOML's basic strings and JSON.
 std::string escaped(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -76,7 +76,7 @@ namespace {
 
 bool is_given(const Place& place) { return place.column > 0; }
 
-/// What the scene says of a table; what it leaves to the schema is left out.
+/// The given values of a table, without defaults.
 Table given(const Table& table) {
     Table out;
     for (const auto& key : table.keys()) {
@@ -96,7 +96,7 @@ Table given(const Table& table) {
     return out;
 }
 
-/// One line, or for a list of tables one for each.
+/// One line, or for a list of tables one per entry.
 std::string scene_lines(const std::string& path, const Value& value) {
     const auto* list = std::get_if<std::vector<Table>>(&value);
     if (!list || list->empty()) return path + " = " + write(value, toml) + "\n";

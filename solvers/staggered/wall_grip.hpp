@@ -88,7 +88,7 @@ struct MacState;
 template <int D>
 class SolidPlacement;
 
-/// Finds the faces and wall links of no-slip bodies in their present position; bodies are the last `riders` of the solids.
+/// Finds the faces and wall links of no-slip bodies in their present position; bodies are the last entries of the solids.
 template <int D>
 void find_grip(const MacState<D>& s, const SolidPlacement<D>& placement, WallGrip<D>& grip);
 

@@ -18,13 +18,13 @@ using scene::Type;
 namespace {
 
 constexpr real gas_constant = 461.526;           // [J/(kg K)]
-constexpr real coldest = 273.16, hottest = 646;  // where the formulas of saturation hold, short of the critical point [K]
+constexpr real coldest = 273.16, hottest = 646;  // range of the saturation formulas, below the critical point [K]
 
 /// Internal energies [J/kg].
 real liquid_energy(const Saturation& s) { return s.liquid_enthalpy - s.p / s.liquid_density; }
 real vapour_energy(const Saturation& s) { return s.vapour_enthalpy - s.p / s.vapour_density; }
 
-/// The temperature at which saturated vapour has this density, by Newton's method for its logarithm; no less than the coldest.
+/// The temperature at which saturated vapour has this density, by Newton's method for its logarithm; at least the coldest.
 real saturated_at(real density) {
     if (density <= water_at_saturation(coldest).vapour_density) return coldest;
     real T = 400;
@@ -102,8 +102,8 @@ ClosedVessel::ClosedVessel(const scene::Scene& scene)
 
 real ClosedVessel::gas_volume(real T) const { return volume_ - liquid_mass() / water_at_saturation(T).liquid_density; }
 
-/// Of liquid at saturation; and of vapour that has come with one heat capacity from where it is saturated at its density, which in balance
-/// is where it is.
+/// Energy of saturated liquid plus that of vapour, which has a constant heat capacity from the saturation temperature of its density; in
+/// equilibrium it is saturated.
 real ClosedVessel::energy(real T) const {
     const Saturation s = water_at_saturation(T);
     const real liquid = liquid_mass() * liquid_energy(s);
@@ -113,7 +113,7 @@ real ClosedVessel::energy(real T) const {
     return liquid + vapour_ * (vapour_energy(water_at_saturation(from)) + c * (T - from));
 }
 
-/// T of U and the masses: the secant through the last temperature and one beside it, again and again.
+/// T from U and the masses, by the secant method.
 void ClosedVessel::find_temperature() {
     constexpr real beside = 0.01;
     for (int i = 0; i < 50; ++i) {
@@ -128,13 +128,13 @@ void ClosedVessel::find_temperature() {
 
 real ClosedVessel::pressure_of_gas() const { return matter::pressure_of_vapour(*water_, vapour_ / gas_volume(T_), T_); }
 
-/// Rate at which the gas comes to the saturation pressure at constant temperature [1/s].
+/// Rate at which the gas approaches the saturation pressure at constant temperature [1/s].
 real ClosedVessel::fastest() const {
     const Saturation s = water_at_saturation(T_);
     return transfer_ * s.p / (s.vapour_density * gas_volume(T_));
 }
 
-/// Liquid and vapour exchange mass at the rate of the beginning, which fades with the difference of pressure; T follows.
+/// Liquid and vapour exchange mass at the rate at the start of the step, which decays with the pressure difference; T follows.
 StepReport ClosedVessel::step(real dt) {
     const real rate = fastest(), lasts = -std::expm1(-rate * dt) / rate;
     const real wanted = transfer_ * (water_at_saturation(T_).p - p_) * lasts;
@@ -148,16 +148,16 @@ StepReport ClosedVessel::step(real dt) {
     return {.dt = dt};
 }
 
-/// A third of what evaporation, and exchange through the wall, take to fade: the heat of evaporation couples the two.
+/// A third of the time constants of evaporation and of exchange through the wall; the heat of evaporation couples both.
 real ClosedVessel::advised_dt() const {
     const Saturation s = water_at_saturation(T_);
-    const real capacity = 2000 * mass_;  // [J/K], less than any of liquid and near that of vapour
+    const real capacity = 2000 * mass_;  // [J/K], below that of any liquid and close to that of vapour
     const real feedback = 1 + s.vapour_density * gas_volume(T_) / s.p * s.dpdT * (vapour_energy(s) - liquid_energy(s)) / capacity;
     const real dt = std::min(1 / (3 * fastest() * feedback), exchange_ > 0 ? capacity / (3 * exchange_) : infinity);
     return std::min(dt, ambient_.to_next_frame(time_));
 }
 
-/// The vessel's cells from below, full of liquid up to its share of the volume.
+/// The vessel's cells from below, filled with liquid up to its volume.
 void ClosedVessel::show() {
     std::fill(temperature_.begin(), temperature_.end(), T_);
     const real level = (1 - gas_volume(T_) / volume_) * grid_.cells[1];
@@ -173,7 +173,7 @@ FieldSet ClosedVessel::fields() const {
     return set;
 }
 
-/// The energy is that of the temperature, not U_, the sum that it was found from: their difference is an error of the state.
+/// The energy is computed from the temperature instead of U_: their difference is an error of the state.
 std::vector<Integral> ClosedVessel::integrals() const {
     return {{"pressure", "Pa", p_},
             {"temperature", "K", T_},

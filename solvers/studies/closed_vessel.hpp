@@ -1,8 +1,8 @@
-// Solver "closed_vessel": water and its vapour in a rigid vessel, each of one temperature and without flow. The gas part has one pressure,
-// of its mass, temperature and volume; liquid evaporates or vapour condenses until that is the saturation pressure:
+// Solver "closed_vessel": water and its vapour in a rigid vessel, with one temperature and without flow. The gas has one pressure,
+// determined by its mass, temperature and volume; liquid evaporates or vapour condenses until that is the saturation pressure:
 //     dm_v/dt = K (p_sat(T) − p),   dU/dt = G (T_outside − T),   U = m_l u_l(T) + m_v u_v(T),   V_v = V − m_l/ρ_l(T).
-// At constant volume evaporation takes u_v − u_l, which is less than the heat of evaporation by the work of an expansion that there is not:
-// T follows from U. The cells of the grid are the vessel, filled up to the liquid's level.
+// At constant volume evaporation takes u_v − u_l, less than the heat of evaporation, since there is no work of expansion: T follows from U.
+// The cells of the grid are the vessel, filled up to the liquid's level.
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"

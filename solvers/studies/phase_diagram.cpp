@@ -10,9 +10,9 @@ using namespace thermo;
 namespace {
 
 constexpr int line_points = 201;
-constexpr real unknown = -1;  // a state where the formulas do not reach
+constexpr real unknown = -1;  // a state outside the range of the formulas
 
-/// The pressure of the line at T; 0 where it does not run.
+/// The pressure of the phase boundary at T; 0 outside its range.
 real pressure_at(const Substance& s, Boundary boundary, real T) {
     if (!s.has(boundary)) return 0;
     const auto [lo, hi] = s.ends(boundary);
@@ -68,7 +68,7 @@ void PhaseDiagram::fill_plane(const Substance& substance) {
     }
 }
 
-/// As far as the plane shows it.
+/// Within the plane's range.
 void PhaseDiagram::add_line(const Substance& substance, Boundary boundary) {
     PointSet line{name_of(boundary), {}, {}, {}};
     auto [lo, hi] = substance.ends(boundary);

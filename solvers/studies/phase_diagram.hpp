@@ -1,5 +1,5 @@
-// Solver "phase_diagram": nothing moves. The plane of the grid is that of temperature (x, in K) and pressure (y, its decimal logarithm, in
-// Pa); its cells show the state of a substance, and sets of points its lines and what it is at chosen temperatures and pressures.
+// Solver "phase_diagram": static. The plane of the grid is that of temperature (x, in K) and pressure (y, its decimal logarithm, in Pa).
+// Its cells show the state of a substance, and point sets its phase boundaries and its properties at chosen temperatures and pressures.
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
@@ -13,7 +13,7 @@ public:
     explicit PhaseDiagram(const scene::Scene& scene);
     static scene::Key samples_key();
 
-    /// Time passes; the substance stays what it is.
+    /// Only advances time.
     StepReport step(real dt) override;
     real advised_dt() const override { return infinity; }
     FieldSet fields() const override;

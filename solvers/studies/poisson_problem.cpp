@@ -40,7 +40,7 @@ PoissonProblemSolver<D>::PoissonProblemSolver(const scene::Scene& scene) {
         auto& weight = matrix_.weight[static_cast<std::size_t>(a)];
         weight = Grid<real, D>(lattice.cells + e<D>(a), 1);
         for_each_cell(weight.extent(), [&](const Index<D>& I) {
-            if (I[a] == 0 || I[a] == lattice.cells[a]) weight(I) = 2;  // p = 0 half a cell from the centre
+            if (I[a] == 0 || I[a] == lattice.cells[a]) weight(I) = 2;  // p = 0 at half a cell from the centre
         });
     }
     const real scale = -lattice.h[0] * lattice.h[0];

@@ -1,5 +1,5 @@
-// Solver "poisson": one manufactured pressure problem, ∇²p = f with f sampled at cell centres, solved in one step. Its discrete errors
-// are known to all digits, so it tests matrix, sides and solver together.
+// Solver "poisson": one manufactured pressure problem, ∇²p = f with f sampled at cell centres, solved in one step. Its discrete errors are
+// known to all digits, so it tests matrix, boundary conditions and solver together.
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
@@ -18,7 +18,7 @@ using namespace staggered;  // the grid's words are the solver's own
 struct ManufacturedProblem {
     const char* name;
     int dim;
-    bool dirichlet;  // p = 0 on all sides; else no flux through them
+    bool dirichlet;  // p = 0 on all sides; otherwise zero flux
     real (*f)(const real* x);
 };
 const std::vector<ManufacturedProblem>& manufactured_problems();
@@ -27,7 +27,7 @@ template <int D>
 class PoissonProblemSolver final : public Solver {
 public:
     explicit PoissonProblemSolver(const scene::Scene& scene);
-    /// Solves from p = 0; the size of dt means nothing.
+    /// Solves from p = 0; dt is ignored.
     StepReport step(real dt) override;
     real advised_dt() const override { return infinity; }
     FieldSet fields() const override;

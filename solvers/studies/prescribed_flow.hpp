@@ -1,4 +1,4 @@
-// Velocities given as functions of place and time, for advection tests.
+// Velocities as functions of position and time, for advection tests.
 #pragma once
 #include "scene/scene.hpp"
 #include "staggered/trace.hpp"
@@ -10,7 +10,7 @@ namespace weir::studies {
 
 using namespace staggered;  // the grid's words are the solver's own
 
-/// A velocity by name. All but "constant" speak of the unit square or cube.
+/// A velocity by name. All except "constant" are defined on the unit square or cube.
 template <int D>
 class PrescribedFlow {
 public:
@@ -26,13 +26,13 @@ private:
     real rate_ = 0, period_ = infinity;
 };
 
-/// Traces through a prescribed flow, evaluated exactly at every stage's place and time.
+/// Traces through a prescribed flow, evaluated exactly at the position and time of every stage.
 template <int D>
 class PrescribedBacktrace final : public Backtrace<D> {
 public:
     PrescribedBacktrace(const PrescribedFlow<D>& flow, const MacVelocity<D>& grid, const geometry::Sides<D>& sides,
                         const std::string& scheme);
-    /// The step that is traced is [t, t + dt]: backwards from its end, forwards (negative dt of row) from its start.
+    /// Sets the traced step, [t, t + dt]: backwards from its end, forwards (negative dt of row) from its start.
     void set_step(real t, real dt) { start_ = t, length_ = dt; }
     void row(int home_axis, const Index<D>& first, int count, real dt, Displacement<D>& to) const override;
 

@@ -10,7 +10,7 @@ namespace weir::studies {
 
 namespace {
 
-/// In [-1, 1), from a number: the mixing of SplitMix64 (Steele, Lea & Flood 2014), the same on every machine.
+/// In [-1, 1), from a counter: the mixing function of SplitMix64 (Steele, Lea & Flood 2014), the same on every machine.
 real noise(std::uint64_t i) {
     i += 0x9e3779b97f4a7c15U;
     i = (i ^ i >> 30) * 0xbf58476d1ce4e5b9U;
@@ -82,7 +82,7 @@ FieldSet ReconstructionStudy::fields() const {
 
 std::vector<Integral> ReconstructionStudy::integrals() const {
     const SurfaceMesh& mesh = maker_->mesh();
-    const bool flat = grid_.dim == 2;  // an area and a length, of lines
+    const bool flat = grid_.dim == 2;  // area and length, for lines
     return {{"particles", "1", static_cast<real>(x_[0].size())},
             {"surface_volume", flat ? "m^2" : "m^3", reconstruction::volume(mesh)},
             {"surface_area", flat ? "m" : "m^2", reconstruction::area(mesh)},

@@ -1,5 +1,5 @@
-// Solver "reconstruction": particles on a lattice, or near one, that nothing moves, in space or on a plane. A step makes the surface around
-// them, so that studies can measure it, and price it.
+// Solver "reconstruction": static particles on or near a lattice, in space or in a plane. A step reconstructs the surface around them, to
+// measure it and its cost.
 #pragma once
 #include "core/solver.hpp"
 #include "reconstruction/reconstruction.hpp"
@@ -32,7 +32,7 @@ private:
     template <int D>
     void fill(const scene::Scene& scene);
 
-    std::array<std::vector<real>, 3> x_;  // on a plane two of them are used
+    std::array<std::vector<real>, 3> x_;  // in a plane only two are used
     std::unique_ptr<reconstruction::Reconstruction> maker_;
     real time_ = 0;
 };

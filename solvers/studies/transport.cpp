@@ -58,7 +58,7 @@ StepReport TransportSolver<D>::step(real dt) {
     return {.dt = dt, .cfl = dt * fastest_};
 }
 
-/// The face velocities at time t, which the fluxes use and the output shows.
+/// The face velocities at time t, for the fluxes and the output.
 template <int D>
 void TransportSolver<D>::set_velocity(real t) {
     for (int a = 0; a < D; ++a) {

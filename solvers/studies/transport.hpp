@@ -1,4 +1,4 @@
-// Solver "transport": cell fields carried by a prescribed velocity, with the same advection code as the flow solvers.
+// Solver "transport": cell fields advected by a prescribed velocity, with the advection code of the flow solvers.
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
@@ -38,7 +38,7 @@ private:
     PrescribedBacktrace<D> trace_;
     std::vector<StageBlend<D>> blend_;
     real cfl_;
-    real fastest_ = not_applicable;  // max |u|/h after the last step; not known before the first [1/s]
+    real fastest_ = not_applicable;  // max |u|/h after the last step; unknown before the first [1/s]
     Passes passes_;
 };
 

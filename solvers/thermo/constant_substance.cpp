@@ -1,4 +1,4 @@
-// A substance whose heats, densities and conductivities are constants. substance.hpp has the equations of its lines.
+// A substance with constant heat capacities, densities and conductivities; the equations of its phase boundaries are in substance.hpp.
 #include "core/error.hpp"
 #include "thermo/substance.hpp"
 

@@ -1,5 +1,5 @@
-// Two equations of state. The ideal gas has no other state. The fluid of van der Waals has liquid and vapour, in balance where Gibbs's
-// energy is the same in both (Maxwell's equal areas). That balance is exact in a parameter y, half the jump of entropy over R (Lekner, Am.
+// Two equations of state. The ideal gas has a single state. The van der Waals fluid has liquid and vapour, in equilibrium where the Gibbs
+// energy of both is equal (Maxwell's equal areas). The equilibrium is exact in a parameter y, half the jump of entropy over R (Lekner, Am.
 // J. Phys. 50 (1982) 161): with f = (y cosh y − sinh y) / (sinh y cosh y − y) and g = 1 + 2 f cosh y + f²
 //     T/T_c = 27 f (f + cosh y) / (4 g²),   p/p_c = 27 f² (1 − f²) / g²,   v/b = 1 + e^(±y) / f   (− liquid, + vapour).
 #include "core/error.hpp"
@@ -30,7 +30,7 @@ private:
 struct Lekner {
     real f, g, c;
     explicit Lekner(real y) : c(std::cosh(y)) {
-        // Below y = 0.05 both differences lose digits; their series: (1/3 + y²/30)/(2/3 + 2y²/15), good to y⁴/500.
+        // below y = 0.05 both differences lose digits; their series: (1/3 + y²/30)/(2/3 + 2y²/15), accurate to y⁴/500
         const real s = std::sinh(y);
         f = y < 0.05 ? (1 + y * y / 10 + y * y * y * y / 280) / (2 + y * y * 2 / 5 + y * y * y * y * 4 / 105) : (y * c - s) / (s * c - y);
         g = 1 + 2 * f * c + f * f;
@@ -63,8 +63,8 @@ public:
     real colder_density(Boundary, real T) const override { return T < top_.T ? 1 / volume(parameter(T), -1) : 1 / (3 * b_); }
     real warmer_density(Boundary, real T) const override { return T < top_.T ? 1 / volume(parameter(T), 1) : 1 / (3 * b_); }
 
-    /// The root of p(ρ, T) = p on the branch of the state, which the densities of balance bound. A liquid is compressed as the equation
-    /// says.
+    /// The root of p(ρ, T) = p on the branch of the state, bounded by the equilibrium densities. The liquid is compressible, by the
+    /// equation of state.
     real density(State state, const Point& at) const override {
         real lo = 0, hi = 1 / b_;
         if (at.T < top_.T)
@@ -84,11 +84,11 @@ public:
     }
 
 private:
-    // ln p falls as 27 T_c/(8 T): at 0.2 T_c it is 1e-6 of the critical one, and no fluid that this equation is used for stays one below.
+    // ln p falls as 27 T_c/(8 T): at 0.2 T_c it is 1e-6 of the critical one, below the range in which this equation is used
     static constexpr real lowest_reduced = 0.2;
     real parameter(real T) const {
         return root_between(real(1e-9), real(40), [&](real y) {
-            const real eps = 1e-6 * y;  // the slope only steers the search
+            const real eps = 1e-6 * y;  // the slope is only used for the search
             const real at = Lekner(y).T();
             return std::pair{T / top_.T - at, -(Lekner(y + eps).T() - at) / eps};
         });

@@ -1,16 +1,16 @@
-// The root of an increasing or decreasing function between two ends.
+// Root of a monotone function in an interval.
 #pragma once
 #include "core/types.hpp"
 
 namespace weir::thermo {
 
-/// f(x) gives the value and its derivative. Newton's method, held inside a bracket that each value narrows (Press et al., Numerical
-/// Recipes, 9.4); ends when x no longer changes by more than rounding. f(lo) and f(hi) must differ in sign, or one be zero.
+/// f(x) returns the value and its derivative. Newton's method within a bracket that each value narrows (Press et al., Numerical Recipes,
+/// 9.4); ends when x changes only by rounding. f(lo) and f(hi) must differ in sign, or one be zero.
 template <class F>
 real root_between(real lo, real hi, F&& f) {
     const bool rising = f(hi).first > 0;
     real x = 0.5 * (lo + hi);
-    for (int i = 0; i < 200; ++i) {  // bisection alone halves the bracket to neighbouring numbers in fewer than 110
+    for (int i = 0; i < 200; ++i) {  // bisection alone narrows the bracket to adjacent numbers in fewer than 110 iterations
         const auto [value, slope] = f(x);
         if (value == 0) return x;
         (rising == (value > 0) ? hi : lo) = x;

@@ -33,7 +33,7 @@ real Substance::temperature(Boundary boundary, real p) const {
     if (!(p > std::min(p_lo, p_hi) && p < std::max(p_lo, p_hi)))
         refuse("the " + std::string(name_of(boundary)) + " line of " + name() + " does not reach " + digits(p) + " Pa",
                "it runs from " + digits(std::min(p_lo, p_hi)) + " to " + digits(std::max(p_lo, p_hi)) + " Pa");
-    // ln p is nearly straight in 1/T where vapour takes part, p itself nearly straight in T where it does not.
+    // ln p is nearly linear in 1/T for boundaries with vapour, p itself nearly linear in T otherwise
     if (boundary == Boundary::melting)
         return root_between(lo, hi, [&](real T) { return std::pair{pressure(boundary, T) - p, slope(boundary, T)}; });
     const real inverse = root_between(1 / hi, 1 / lo, [&](real x) {
@@ -72,7 +72,7 @@ State Substance::state(const Point& at) const {
     const bool above_melting = within(Boundary::melting) && at.p >= pressure(Boundary::melting, at.T);
     const auto critical_point = critical();
     if (has(Boundary::melting) && triple()) {
-        // Ice that is lighter than its melt becomes liquid under pressure, all else becomes solid. Where the line stands upright, the
+        // a solid lighter than its melt liquefies under pressure, others solidify; for a vertical boundary the temperature decides
         // temperature decides.
         const real tilt = slope(Boundary::melting, triple()->T);
         const bool shrinks = tilt < 0, upright = std::isinf(tilt);
@@ -103,7 +103,7 @@ HeatCurve Substance::heat_curve(real p) const {
         boil(curve);
         return curve;
     }
-    // The solid at the triple point lacks the heat of fusion that the liquid there has.
+    // the solid at the triple point has the liquid's enthalpy minus the heat of fusion
     HeatCurve curve(State::solid, c(State::solid), three->T, -latent_heat(Boundary::melting, three->T));
     if (p <= three->p) {
         const real T = temperature(Boundary::sublimation, p);

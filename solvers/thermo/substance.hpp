@@ -1,5 +1,5 @@
-// What a substance is at temperature T and pressure p: its state, the lines between states, densities and heats. Lines obey Clapeyron's
-// equation, dp/dT = L / (T Δv), by which latent heats follow from slopes and densities, or slopes from latent heats.
+// Properties of a substance at temperature T and pressure p: its state, phase boundaries, densities and heats. Phase boundaries obey the
+// Clapeyron equation, dp/dT = L / (T Δv), which gives latent heats from slopes and densities, or slopes from latent heats.
 #pragma once
 #include "core/types.hpp"
 #include "thermo/heat_curve.hpp"
@@ -16,7 +16,7 @@ struct Point {
     real T = 0, p = 0;  // [K], [Pa]
 };
 
-/// The line between two states: of solid and vapour, solid and liquid, liquid and vapour.
+/// A phase boundary: solid-vapour, solid-liquid, liquid-vapour.
 enum class Boundary { sublimation, melting, saturation };
 const char* name_of(Boundary boundary);
 
@@ -31,37 +31,38 @@ public:
     virtual ~Substance() = default;
     virtual const char* name() const = 0;
 
-    /// Where the three states meet, and where liquid and vapour become one; none where the substance has no such point.
+    /// The triple point, and the critical point; nullopt where the substance has none.
     virtual std::optional<Point> triple() const { return {}; }
     virtual std::optional<Point> critical() const { return {}; }
-    /// Where the formulas hold; beyond, state() and heat_curve() throw BadInput, which names the limit.
+    /// Limits of the formulas; beyond, state() and heat_curve() throw BadInput, which names the limit.
     virtual Point lowest() const { return {}; }
     virtual Point highest() const { return {infinity, infinity}; }
 
     virtual bool has(Boundary boundary) const = 0;
-    /// The temperatures between which the line runs [K].
+    /// The temperature range of the phase boundary [K].
     virtual std::pair<real, real> ends(Boundary boundary) const = 0;
     virtual real pressure(Boundary boundary, real T) const = 0;  // [Pa]
     virtual real slope(Boundary boundary, real T) const = 0;     // dp/dT [Pa/K]
-    /// The inverse of pressure(), to round-off. Throws BadInput where the line does not reach p.
+    /// The inverse of pressure(), to round-off. Throws BadInput where the boundary does not reach p.
     virtual real temperature(Boundary boundary, real p) const;
 
-    /// Density [kg/m^3]: of a liquid that of saturation at T, of a vapour at its own pressure.
+    /// Density [kg/m^3]: for a liquid that of saturation at T, for a vapour at its own pressure.
     virtual real density(State state, const Point& at) const = 0;
-    /// Of the two states on a line, the one without and the one with the latent heat [kg/m^3].
+    /// Densities of the two states on a phase boundary, the one without and the one with the latent heat [kg/m^3].
     virtual real colder_density(Boundary boundary, real T) const;
     virtual real warmer_density(Boundary boundary, real T) const;
     /// L = T dp/dT (1/ρ_warmer − 1/ρ_colder) [J/kg]
     virtual real latent_heat(Boundary boundary, real T) const;
 
     virtual Conduction conduction(State state) const = 0;
-    /// Of the liquid (of a gas, the gas) at constant pressure, −(1/ρ) ∂ρ/∂T [1/K].
+    /// Of the liquid (or the gas) at constant pressure, −(1/ρ) ∂ρ/∂T [1/K].
     virtual real expansion(real T) const = 0;
 
-    /// On a line the state is the warmer one. Above the critical pressure the liquid ends at the critical temperature; above that
+    /// On a phase boundary the state is the warmer one. Above the critical pressure the liquid ends at the critical temperature; above that
     /// temperature and below that pressure there is vapour.
     virtual State state(const Point& at) const;
-    /// Enthalpy against temperature at one pressure. The liquid at the triple point (else at boiling, else the gas at 0 K) has none.
+    /// Enthalpy and temperature at one pressure. The enthalpy is zero for the liquid at the triple point (otherwise at boiling, otherwise
+    /// for the gas at 0 K).
     virtual HeatCurve heat_curve(real p) const;
 
 protected:
@@ -70,20 +71,20 @@ protected:
 
 using SubstancePtr = std::shared_ptr<const Substance>;
 
-/// Water by the formulas of IAPWS: SR1-86(1992) saturation, R14-08(2011) sublimation and melting (water.cpp has the equations).
+/// Water by the IAPWS formulas: SR1-86(1992) saturation, R14-08(2011) sublimation and melting (water.cpp has the equations).
 SubstancePtr water();
 
-/// Water where liquid and vapour are in balance, enthalpies included: u = h − p/ρ is what a closed vessel takes up.
+/// Water at the equilibrium of liquid and vapour, with enthalpies: the energy in a closed vessel is u = h − p/ρ.
 struct Saturation {
     real p, dpdT;                           // [Pa], [Pa/K]
     real liquid_density, vapour_density;    // [kg/m^3]
-    real liquid_enthalpy, vapour_enthalpy;  // of zero internal energy in the liquid at the triple point [J/kg]
+    real liquid_enthalpy, vapour_enthalpy;  // relative to zero internal energy of the liquid at the triple point [J/kg]
 };
 Saturation water_at_saturation(real T);
 
-/// A substance by constants. The line of saturation goes through both points by Clausius and Clapeyron's equation with a constant latent
-/// heat and an ideal vapour, ln(p/p₃) = (L/R) (1/T₃ − 1/T): so the gas constant follows. Sublimation has the same R, melting is
-/// p − p₃ = (L/Δv) ln(T/T₃), and upright where solid and liquid weigh the same.
+/// A substance defined by constants. The saturation curve passes through both points by the Clausius-Clapeyron equation with constant
+/// latent heat and ideal vapour, ln(p/p₃) = (L/R) (1/T₃ − 1/T), which defines the gas constant. Sublimation has the same R. Melting is p −
+/// p₃ = (L/Δv) ln(T/T₃), vertical for equal densities of solid and liquid.
 struct Constants {
     Point triple, critical;
     real fusion = 0, vaporisation = 0;           // latent heats [J/kg]
@@ -91,7 +92,7 @@ struct Constants {
     Conduction solid, liquid, vapour;
     real expansion = 0;  // of the liquid [1/K]
 };
-/// What of the constants cannot be: the name of one of them ("triple", "critical", "fusion") and what is wrong with it.
+/// An invalid constant: its name ("triple", "critical", "fusion") and the problem.
 struct Fault {
     std::string constant, message;
 };
@@ -99,10 +100,10 @@ std::vector<Fault> faults(const Constants& constants);
 /// Throws BadInput with the first fault.
 SubstancePtr of_constants(const Constants& constants);
 
-/// The gas of p = ρ R T.
+/// The ideal gas p = ρ R T.
 SubstancePtr ideal_gas(real gas_constant, const Conduction& vapour);
 
-/// The fluid of p = ρ R T / (1 − b ρ) − a ρ² with the critical point given; boiling by Maxwell's rule of equal areas.
+/// The van der Waals fluid p = ρ R T / (1 − b ρ) − a ρ² with the given critical point; boiling by Maxwell's rule of equal areas.
 SubstancePtr van_der_waals(real gas_constant, const Point& critical, const Conduction& liquid, const Conduction& vapour);
 
 }  // namespace weir::thermo

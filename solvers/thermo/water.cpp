@@ -15,11 +15,11 @@ namespace {
 
 constexpr Point triple_point{273.16, 611.657}, critical_point{647.096, 22.064e6};
 constexpr real critical_density = 322, gas_constant = 461.526;
-constexpr real melting_end = 251.165;      // there ice Ih meets ice III and water [K]
+constexpr real melting_end = 251.165;      // triple point of ice Ih, ice III and water [K]
 constexpr real sublimation_begin = 50;     // [K]
 constexpr real ice_density = 916.7094922;  // IAPWS R10-06(2009) at the triple point
-// At constant temperature, of ice (R10-06) and of water at 0 °C (IAPWS-95) [1/Pa]: without them the heat of fusion along the line of
-// melting would be wrong by 6% at 15 MPa already, since its Δv is a small difference.
+// at constant temperature, of ice (R10-06) and of water at 0 °C (IAPWS-95) [1/Pa]; without them the heat of fusion along the melting curve
+// would have an error of 6% at 15 MPa, since its Δv is a small difference
 constexpr real ice_compressibility = 1.1779e-10, water_compressibility = 5.0885e-10;
 
 /// a x^e
@@ -96,7 +96,7 @@ public:
         return pressure(boundary, T) / triple_point.T * (derivative(sublimation, x) - sum(sublimation, x) / x) / x;
     }
 
-    /// The formula of saturation is 1e-7 above the triple point's pressure there: what lies between belongs to that point.
+    /// The saturation formula exceeds the triple point's pressure by 1e-7 there: pressures in between are assigned to that point.
     real temperature(Boundary boundary, real p) const override {
         const bool between = boundary == Boundary::saturation && p >= triple_point.p && p <= saturation_pressure(triple_point.T);
         return between ? triple_point.T : Substance::temperature(boundary, p);
@@ -118,9 +118,9 @@ public:
         return saturated_liquid(triple_point.T) * std::exp(water_compressibility * (pressure(boundary, T) - triple_point.p));
     }
 
-    /// Ice: heat capacity of R10-06 at 273.15 K and 101325 Pa; conductivity of Slack 1980 at 273 K. Water: the mean heat capacity from the
-    /// triple to the normal boiling point that the enthalpies below have; conductivity of Ramires et al. 1995 at 298.15 K. Steam: at
-    /// 373 K and 101325 Pa, IAPWS-95; conductivity there without density, IAPWS R15-11.
+    /// Ice: heat capacity of R10-06 at 273.15 K and 101325 Pa; conductivity of Slack 1980 at 273 K. Water: mean heat capacity from the
+    /// triple to the normal boiling point, consistent with the enthalpies below; conductivity of Ramires et al. 1995 at 298.15 K. Steam: at
+    /// 373 K and 101325 Pa, IAPWS-95; conductivity there at zero density, IAPWS R15-11.
     Conduction conduction(State state) const override {
         if (state == State::solid) return {2096.7, 2.14};
         if (state == State::liquid) return {4192.03, 0.6065};
@@ -132,8 +132,8 @@ public:
     }
 
 private:
-    /// Z = p/(ρ R T) of the vapour: on the line of saturation as measured, and towards 1 from there. Along a line of constant pressure 1 −
-    /// Z falls as T⁻², as van der Waals's attraction does; below the triple point, where only vapour of little pressure is, it falls as p.
+    /// Z = p/(ρ R T) of the vapour: the measured value on the saturation curve, tending to 1 away from it. At constant pressure 1 − Z falls
+    /// as T⁻², as the van der Waals attraction does; below the triple point, where only vapour of low pressure exists, it falls as p.
     static real compressibility_factor(const Point& at) {
         const real at_triple = triple_point.p / (saturated_vapour(triple_point.T) * gas_constant * triple_point.T);
         if (at.p <= triple_point.p) return 1 - (1 - at_triple) * at.p / triple_point.p;

@@ -1,5 +1,5 @@
-// Whether triangles bound a region: every edge belongs to two of them that run along it in opposite ways, and around every point they
-// form one ring.
+// Checks that triangles bound a region: every edge belongs to two of them in opposite directions, and those around every point form a
+// single ring.
 #include "core/error.hpp"
 #include "geometry/mesh/triangles.hpp"
 
@@ -33,7 +33,7 @@ struct EdgeHash {
     }
 };
 
-/// Triangles at one point, linked across its edges, are one ring where it is a surface.
+/// Returns whether the triangles at a point, linked across its edges, are a single ring.
 bool is_one_ring(const std::vector<std::array<int, 3>>& corners, const std::vector<int>& around, int point) {
     std::vector<std::pair<int, int>> steps;  // each triangle leads from one neighbour of the point to the next
     for (const int t : around) {
@@ -59,7 +59,7 @@ void weld(Triangles& mesh) {
     const auto& x = mesh.points;
     const auto at = [&](int i) -> const std::array<real, 3>& { return x[static_cast<std::size_t>(i)]; };
     std::sort(order.begin(), order.end(), [&](int i, int j) { return at(i) != at(j) ? at(i) < at(j) : i < j; });
-    for (std::size_t k = 0; k < order.size(); ++k)  // the first of equal ones stands for all
+    for (std::size_t k = 0; k < order.size(); ++k)  // the first of equal ones represents all
         to[static_cast<std::size_t>(order[k])] =
             k > 0 && at(order[k]) == at(order[k - 1]) ? to[static_cast<std::size_t>(order[k - 1])] : order[k];
     std::vector<int> number(x.size(), -1);
@@ -106,7 +106,7 @@ void require_closed(Triangles& mesh, const std::string& name) {
         for (std::size_t k = 0; k < 3; ++k) ++uses[{t[k], t[(k + 1) % 3]}];
     std::size_t open = 0;
     Edge first{};
-    for (const auto& t : mesh.corners)  // in the order of the file, so that the same edge is named each time
+    for (const auto& t : mesh.corners)  // in the order of the file, so that the same edge is reported each time
         for (std::size_t k = 0; k < 3; ++k) {
             const Edge e{t[k], t[(k + 1) % 3]}, back{e.to, e.from};
             const int along = uses[e];
@@ -127,7 +127,7 @@ void require_closed(Triangles& mesh, const std::string& name) {
     for (std::size_t i = 0; i < around.size(); ++i)
         if (!is_one_ring(mesh.corners, around[i], static_cast<int>(i)))
             throw BadInput(name + ": not manifold: two surfaces meet in the one point " + place(mesh.points[i]));
-    // Rounding of a sum of n products is n eps/2 of each at most, and about sqrt(n) of them: with a million triangles, 1e3 eps of all.
+    // rounding of a sum of n products is at most n eps/2 of each, and typically sqrt(n) of them: for a million triangles, 1e3 eps of all
     real products = 0;
     const real volume = six_volumes(mesh, &products);
     if (!(std::abs(volume) > 1e3 * std::numeric_limits<real>::epsilon() * products))

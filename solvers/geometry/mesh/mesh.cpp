@@ -15,7 +15,7 @@ namespace weir::geometry {
 
 namespace {
 
-/// Distances are kept in single precision, and moments are fifth powers of lengths: both are numbers within these [file's unit].
+/// Distances are single precision, and moments are fifth powers of lengths: both are representable within these bounds [file's unit].
 constexpr real largest = 1e30, smallest = 1e-30;
 
 void require_size(const Triangles& mesh, const std::string& name) {
@@ -45,8 +45,8 @@ Mesh::Mesh(Triangles triangles, int resolution, const std::string& name) : trian
     MeshSampler::sample(*this, resolution, name);
 }
 
-/// Sums over the tetrahedra between each triangle and one point: of corners 0, a, b, c and six times the volume d, ∫1 = d/6,
-/// ∫x = d/24 (a + b + c), ∫x xᵀ = d/120 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c.
+/// Integrals over the tetrahedra between each triangle and one point. With corners 0, a, b, c and six times the volume d, ∫1 = d/6, ∫x =
+/// d/24 (a + b + c), ∫x xᵀ = d/120 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c.
 void Mesh::weigh() {
     const Vec<3> o = 0.5 * (min_ + max_);
     real volumes = 0;
@@ -81,7 +81,7 @@ real Mesh::distance(const Vec<3>& x) const {
         (1 - f[2]) * ((1 - f[1]) * line(p) + f[1] * line(p + row)) + f[2] * ((1 - f[1]) * line(p + sheet) + f[1] * line(p + sheet + row));
     const Vec<3> off = x - on;
     const real away = dot(off, off);
-    return away > 0 ? std::sqrt(away + d * d) : d;  // the grid is convex and holds the surface: Pythagoras is a lower bound
+    return away > 0 ? std::sqrt(away + d * d) : d;  // the grid is convex and contains the surface: Pythagoras gives a lower bound
 }
 
 std::size_t Mesh::bytes() const {
@@ -100,7 +100,7 @@ Vec<3> PosedMesh::to_file(const Vec<3>& x) const {
 
 namespace {
 
-/// The same file at the same grid is read and sampled once; of those that nobody holds the last few stay.
+/// A file with the same grid is read and sampled once; a few unused meshes are cached.
 std::shared_ptr<const Mesh> load(const std::filesystem::path& file, int resolution) {
     using Stamp = std::tuple<std::string, std::filesystem::file_time_type, int>;
     static std::mutex lock;

@@ -1,5 +1,5 @@
-// A closed surface of triangles as a region of space: its distance from a grid that is sampled once, when the file is read, and its mass by
-// the divergence theorem, exact.
+// A closed surface of triangles as a region of space: its distance from a grid sampled once, when the file is read, and its mass by the
+// divergence theorem, exact.
 #pragma once
 #include "geometry/mesh/triangles.hpp"
 #include "scene/scene.hpp"
@@ -10,14 +10,14 @@ namespace weir::geometry {
 
 class Mesh {
 public:
-    /// `resolution`: cells of the grid of distances along the longest side. Throws BadInput with `name` in front where the triangles bound
-    /// no region, or overlap.
+    /// `resolution`: cells of the distance grid along the longest side. Throws BadInput, prefixed with `name`, where the triangles bound no
+    /// region, or overlap.
     Mesh(Triangles triangles, int resolution, const std::string& name);
 
     const Triangles& triangles() const { return triangles_; }
     const Vec<3>& min() const { return min_; }
     const Vec<3>& max() const { return max_; }
-    /// Signed distance: linear between nodes of the grid, whose own are exact near the surface; off the grid not more than the true one.
+    /// Signed distance: linear between grid nodes, whose values are exact near the surface; outside the grid a lower bound.
     real distance(const Vec<3>& x) const;
 
     /// Of unit density. second[a][b] = ∫ (x − centre)_a (x − centre)_b.
@@ -35,14 +35,14 @@ private:
     real volume_ = 0;
     Vec<3> centre_{};
     std::array<Vec<3>, 3> second_{};
-    // The grid of distances
+    // the distance grid
     Vec<3> origin_{};
     real h_ = 0;
     Index<3> nodes_{};
     std::vector<float> phi_;
 };
 
-/// A mesh where a scene puts it: x = at + scale R y, y in the file's unit.
+/// A mesh in its position in a scene: x = at + scale R y, y in the file's unit.
 struct PosedMesh {
     std::shared_ptr<const Mesh> mesh;
     real scale = 1;
@@ -52,13 +52,13 @@ struct PosedMesh {
     Vec<3> to_file(const Vec<3>& x) const;
 };
 
-/// What a table of the shape "mesh" describes. A file that is named several times is read once.
+/// The mesh of a table of the shape "mesh". A file that is named several times is read once.
 PosedMesh make_mesh(const scene::Table& table);
 
-/// Refuses, at the key that names the file, what cannot be read or bounds no region (BadScene).
+/// Throws BadScene, at the key of the file, where it cannot be read or bounds no region.
 void require_meshes(const scene::Scene& scene);
 
-/// Names the files of all meshes in a table, and in those within it, by their paths from another folder: for a scene that is written there.
+/// Rewrites the paths of all mesh files in a table, including nested ones, relative to another folder: for a scene that is written there.
 void name_meshes_from(const std::filesystem::path& folder, scene::Table& table);
 
 }  // namespace weir::geometry

@@ -1,5 +1,5 @@
-// Readers of STL, OBJ and PLY. They are our own because a file of a stranger may be broken anywhere: VTK 9.1 aborts the program at a PLY
-// file that ends early, takes a word for the number 0 and keeps corners that name no point.
+// Readers of STL, OBJ and PLY. They are implemented here because input files may be damaged anywhere: VTK 9.1 aborts the program at a PLY
+// file that ends early, reads a word as the number 0 and accepts corners with invalid point indices.
 #include "core/error.hpp"
 #include "core/words.hpp"
 #include "geometry/mesh/triangles.hpp"
@@ -20,7 +20,7 @@ void refuse_many(const std::string& name, double count) {
                        std::to_string(most_triangles) + " are read, more than a grid of distances can show");
 }
 
-/// Numbers as they lie in a file of bytes.
+/// Numbers in a binary file.
 template <class T>
 T number_at(const std::string& bytes, std::size_t at, bool swapped) {
     std::array<char, sizeof(T)> raw;
@@ -36,7 +36,7 @@ Vec<3> point(Words& words) {
     return x;
 }
 
-/// A face of several corners as a fan; each corner names a point from 0.
+/// A polygon as a fan of triangles; corners are point indices from 0.
 void add_face(const std::vector<int>& face, Triangles& mesh) {
     for (std::size_t i = 2; i < face.size(); ++i) mesh.corners.push_back({face[0], face[i - 1], face[i]});
 }
@@ -64,7 +64,7 @@ Triangles stl_of_text(Words words) {
             words.fail(found.empty() ? "the file ends where \"" + std::string(word) + "\" is expected"
                                      : '"' + Words::shown(found) + "\" stands where \"" + word + "\" is expected");
     };
-    while (!words.peek().empty()) {  // several solids may stand in one file
+    while (!words.peek().empty()) {  // a file may contain several solids
         need("solid");
         words.skip_line();
         for (; words.peek() == "facet"; need("endfacet")) {
@@ -108,7 +108,7 @@ Triangles read_obj(const std::filesystem::path& file) {
             for (int a = 0; a < 3; ++a) x[a] = words.number_in(words.next_of_line(), "a coordinate");
             mesh.points.push_back(x);
             Vec<3> rgb;
-            int colours = 0;  // many programs write red, green and blue behind the place
+            int colours = 0;  // many programs write red, green and blue after the position
             for (auto word = words.next_of_line(); !word.empty() && colours < 3; word = words.next_of_line())
                 rgb[colours++] = words.number_in(word, "a colour");
             if (colours == 3) mesh.colours.push_back(rgb);
@@ -132,7 +132,7 @@ Triangles read_obj(const std::filesystem::path& file) {
 
 /// One property of a PLY element: a number, or a list of them.
 struct Property {
-    std::string name, type, count;  // count: the type of a list's length; empty: no list
+    std::string name, type, count;  // count: the type of a list's length; empty: not a list
 };
 struct Element {
     std::string name;
@@ -230,7 +230,7 @@ private:
         require_elements();
     }
 
-    /// One without properties takes no byte of the file: its count would be gone through, however large.
+    /// Elements without properties take no bytes of the file, so their count would be unbounded.
     void require_elements() const {
         for (const Element& element : elements_)
             if (element.count > 0 && element.properties.empty())

@@ -1,6 +1,6 @@
-// Distances to a closed surface of triangles on the nodes of a grid (Bridson's level sets of meshes, as in Bridson & Batty's SDFGen 2009):
-// exact at nodes near a triangle, carried outwards by the nearest triangle of a neighbour (Tsai 2002), and inside by the winding number
-// along rays in x, where a ray that meets an edge or a corner is moved by an infinitesimal that is the same for all triangles.
+// Distances to a closed surface of triangles on the nodes of a grid (Bridson's level sets of meshes, as in Bridson & Batty's SDFGen 2009).
+// Exact at nodes near a triangle, propagated outwards by the nearest triangle of a neighbour (Tsai 2002). The sign is given by the winding
+// number along rays in x; rays through an edge or a corner are perturbed by an infinitesimal common to all triangles.
 #include "geometry/mesh/sample.hpp"
 #include "core/error.hpp"
 
@@ -13,7 +13,7 @@ namespace weir::geometry {
 
 namespace {
 
-/// Squared, to a triangle (Ericson 2005, section 5.1.5).
+/// Squared distance to a triangle (Ericson 2005, section 5.1.5).
 real squared_distance(const Vec<3>& p, const Vec<3>& a, const Vec<3>& b, const Vec<3>& c) {
     const Vec<3> ab = b - a, ac = c - a, ap = p - a;
     const auto to = [&](const Vec<3>& q) { return dot(p - q, p - q); };
@@ -35,7 +35,7 @@ real squared_distance(const Vec<3>& p, const Vec<3>& a, const Vec<3>& b, const V
     return to(a + (vb / sum) * ab + (vc / sum) * ac);
 }
 
-/// Which way round the origin lies of the line from (x1, y1) to (x2, y2); never undecided for points in different places.
+/// The side of the line from (x1, y1) to (x2, y2) on which the origin lies; never zero for distinct points.
 int side(real x1, real y1, real x2, real y2) {
     const real area = y1 * x2 - x1 * y2;
     if (area != 0) return area > 0 ? 1 : -1;
@@ -110,8 +110,7 @@ void MeshSampler::carry_outwards() {
     }
 }
 
-/// How often the surface winds around each node: 1 inside, 0 outside; what else there is counts some of space twice, or as a hole of
-/// nothing.
+/// Winding number of the surface around each node: 1 inside, 0 outside; other values mean overlaps or inverted cavities.
 void MeshSampler::find_inside(const std::string& name) {
     const auto& mesh = mesh_.triangles_;
     std::vector<std::int16_t> enters(product(n_), 0);

@@ -1,4 +1,4 @@
-// Fills a mesh's grid of distances.
+// Computes a mesh's distance grid.
 #pragma once
 #include "geometry/mesh/mesh.hpp"
 
@@ -11,7 +11,7 @@ public:
     static void sample(Mesh& mesh, int resolution, const std::string& name);
 
 private:
-    /// Nodes around the box of the mesh, and nodes around a triangle that it is measured from.
+    /// Nodes around the bounding box, and nodes around a triangle with exact distances.
     static constexpr int margin = 2, exact = 2;
 
     explicit MeshSampler(Mesh& mesh);
