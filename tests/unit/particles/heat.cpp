@@ -247,6 +247,34 @@ TEST("no heat passes between two that are as warm as each other, in whatever sta
     }
 }
 
+// Kirchhoff 1894: theta is the integral of k dT from where the liquid begins. The liquid's conductivity lasts up to where it boils at the
+// deepest place of the domain, 1 m below its top (heat_state.inl); from there on the conductivity is the vapour's, for water 1/25 of the
+// liquid's.
+TEST("the integral of the conductivity of a liquid that boils goes on with the vapour's conductivity") {
+    const auto scene = pot("heat.vapour = { name = \"own\", density = 10.0 }\neffects.gravity.g = [0, -9.81]\n");
+    auto fluid = particles::initial_fluid<2>(scene);
+    const particles::Heat<2> heat(scene, fluid.domain);
+    fluid.enthalpy[0] = heat.states().vapour_begin;  // something boils
+    heat.place(fluid);
+    const auto water = thermo::water();
+    const auto& s = heat.states();
+    const auto k = [&](State state) { return water->conduction(state).conductivity; };
+    const real begins = water->temperature(thermo::Boundary::melting, 101325),
+               boils = water->temperature(thermo::Boundary::saturation, 101325 + 1000 * 9.81 * 1.0);
+    ASSERT_LT(k(State::vapour), 0.1 * k(State::liquid));
+    for (const real T : {250.0, 300.0, 374.0, 380.0, 400.0, 600.0}) {
+        const real exact = T < begins ? k(State::solid) * (T - begins)
+                                      : k(State::liquid) * (std::min(T, boils) - begins) + k(State::vapour) * std::max<real>(0, T - boils);
+        real lo = -1e6, hi = 4e6;  // the enthalpy that has this temperature
+        for (int bisection = 0; bisection < 100; ++bisection) {
+            const real h = 0.5 * (lo + hi);
+            (particles::heat_temperature(h, heat.shift(0), &s) < T ? lo : hi) = h;
+        }
+        // the boiling temperature from a table of straight pieces, 1e-4 K as above, times a conductivity of less than 1 W/(m K)
+        EXPECT_NEAR(heat.theta(0, hi), exact, 1e-4) << T;
+    }
+}
+
 /// Steady between surroundings and a wall that is held: how far from the straight line of an exchange and a slab one after the other [K].
 real off_the_line(int cells) {
     const auto scene = scene::parse(
