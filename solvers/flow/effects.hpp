@@ -7,8 +7,8 @@ namespace weir::flow {
 
 using namespace staggered;  // the grid's words are the solver's own
 
-/// The stages of its step: all.
-inline const std::vector<Stage> stages{Stage::source, Stage::force, Stage::carried, Stage::implicit, Stage::finish};
+/// Its step runs all stages.
+inline const std::vector<Stage> all_stages{Stage::source, Stage::force, Stage::carried, Stage::implicit, Stage::finish};
 
 /// All of them, in the order in which they act in a stage: gravity first.
 const EffectKinds& effect_kinds();

@@ -161,7 +161,7 @@ bool lists(const scene::Scene& scene, const std::string& field) {
 template <int D>
 FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     : held_(held_planes<D>(scene, planes_beside, ghost_layers)),
-      effects_(make_effects<D>(effect_kinds(), scene, stages)),
+      effects_(make_effects<D>(effect_kinds(), scene, all_stages)),
       state_(scene, field_plan(effects_, scene)),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),

@@ -47,7 +47,7 @@ public:
           sides_(scene),
           lattice_(scene),
           size_(lattice_.cells),
-          effects_(make_effects<D>(effect_kinds(), scene, stages)),
+          effects_(make_effects<D>(effect_kinds(), scene, all_stages)),
           shape_(shape),
           fields_(static_cast<std::int64_t>(field_plan(effects_, scene).advected_fields().size())),
           deep_(planes_reached(shape.cells_crossed, lattice_.cells[D - 1])),

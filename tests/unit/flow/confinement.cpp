@@ -45,7 +45,7 @@ TEST_IN_2D_AND_3D("vorticity confinement pushes every inner face by the mean of 
     const auto scene = test::mac_scene(test::unit_box(D, 13,
                                                       "solids = [ { shape = \"sphere\", centre = " + test::list(D, "0.4") +
                                                           ", radius = 0.2 } ]\neffects = { confinement = { epsilon = 0.3 } }\n"));
-    auto effects = make_effects<D>(effect_kinds(), scene, stages);
+    auto effects = make_effects<D>(effect_kinds(), scene, all_stages);
     MacState<D> state(scene, effects.plan());
     state.before = PaddedVelocity<D>(state.u);
     set_random_flow(state.u, 1, 3);

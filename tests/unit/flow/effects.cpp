@@ -20,7 +20,7 @@ real some_value(const Index<D>& I, real phase) {
 
 TEST_IN_2D_AND_3D("buoyancy pushes every inner face along y by the mean of its two cells: warmth upwards, smoke downwards") {
     const auto scene = test::mac_scene(test::unit_box(D, 7, "effects = { buoyancy = { alpha = 0.3, beta = 0.7, ambient = 1.5 } }\n"));
-    auto effects = make_effects<D>(effect_kinds(), scene, stages);
+    auto effects = make_effects<D>(effect_kinds(), scene, all_stages);
     MacState<D> state(scene, effects.plan());
     auto &T = state["temperature"], &smoke = state["smoke"];
     for_each_cell(state.extent(), [&](const Index<D>& I) { T(I) = some_value<D>(I, 0), smoke(I) = some_value<D>(I, 1); });
@@ -38,7 +38,7 @@ TEST_IN_2D_AND_3D("along paths cooling and decay leave exp(-rate dt) of what fie
     const auto scene = test::mac_scene(test::unit_box(
         D, 7,
         "effects = { cooling = { rate = 0.7, ambient = 1.2 }, decay = { rate = 0.4 } }\nscheme = { advection = \"semi_lagrangian\" }\n"));
-    auto effects = make_effects<D>(effect_kinds(), scene, stages);
+    auto effects = make_effects<D>(effect_kinds(), scene, all_stages);
     MacState<D> state(scene, effects.plan());
     auto &T = state["temperature"], &smoke = state["smoke"];
     for_each_cell(state.extent(), [&](const Index<D>& I) { T(I) = some_value<D>(I, 0), smoke(I) = some_value<D>(I, 1); });

@@ -26,7 +26,7 @@ struct Row {
                 "initial.tracer = {{ name = \"formula\", value = \"{4}\" }}\nscheme = {{ {5} }}\n",
                 n, 4.0 / n, seconds, cells_per_step / n, tracer, scheme),
             "row.toml", weir::sim::schemas()));
-        simulation.run();
+        simulation.run_until(seconds);
         const auto fields = simulation.fields();
         const auto row = fields.find("", "tracer")->data[0];
         return {row.begin(), row.begin() + n};
