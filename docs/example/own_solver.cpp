@@ -96,7 +96,7 @@ public:
 private:
     Plate plate_;
     real alpha_;  // [m^2/s]
-    weir::Effects<Plate> effects_;
+    weir::Effects<Plate> effects_{"spreading", {weir::Stage::source}};
     weir::Passes passes_;
 };
 

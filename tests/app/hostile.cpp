@@ -220,7 +220,7 @@ TEST("OMP_NUM_THREADS of more threads than a thousand is refused with what is al
     const Answer answer = weir_says({"run", "a.toml", "--out", "out"});
     setenv("OMP_NUM_THREADS", before.c_str(), 1);
     EXPECT_EQ(answer.code, 2);
-    EXPECT_NE(answer.text.find("OMP_NUM_THREADS=99999: a number of threads is 1 to 1024"), std::string::npos) << answer.text;
+    EXPECT_NE(answer.text.find("OMP_NUM_THREADS=99999: expected a number of threads from 1 to 1024"), std::string::npos) << answer.text;
     EXPECT_FALSE(fs::exists("out"));
 }
 

@@ -137,7 +137,7 @@ TEST("a scene that needs more memory than there is is refused in less than a sec
         FAIL() << "125 million cells do not fit into 8 GB";
     } catch (const BadInput& no) {
         const std::string text = no.what();
-        EXPECT_NE(text.find("1.25e+08 cells need"), std::string::npos) << text;
+        EXPECT_NE(text.find("1.25e+08 cells require"), std::string::npos) << text;
         EXPECT_NE(text.find("8 GB"), std::string::npos) << text;
     }
     // some tenths on a quiet machine, and a rival for its cores
