@@ -156,7 +156,7 @@ TEST("--range names both ends of the colours, or the upper one; what is no range
     EXPECT_TRUE(picture("200,400") == middle);
     EXPECT_TRUE(picture("-300,900") == middle);
     for (const auto& [range, why] : {std::pair{"400,300", "LOW must be less than HIGH"},
-                                     {"warm", "is no number"},
+                                     {"warm", "is not a number"},
                                      {"1,2,3", "has too many values"},
                                      {"-5", "a single value, that of the highest colour, must be greater than 0"}}) {
         Process refused({"picture", folder.path() / "even", std::string("--range=") + range}, folder.path() / "log");
