@@ -1,5 +1,7 @@
 #include "sim/balance.hpp"
 
+#include "core/slabs.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -201,7 +203,7 @@ Balance::Balance(const Simulation& simulation) : from_(simulation.time()), start
 }
 
 void Balance::on_step(const Simulation& simulation, const StepReport& report) {
-    if (++steps_ % steps_between == 0) on_frame(simulation);
+    if (++steps_ % steps_between == 0 && !over_ranks()) on_frame(simulation);
     if (std::isnan(report.max_divergence)) return;
     divergence_ = std::fmax(divergence_, report.max_divergence);
     cell_change_ = std::fmax(cell_change_, report.max_divergence * report.dt);

@@ -1,5 +1,5 @@
 // The balance of a run: the solver's integrals at its start and its end, and the net inflow. The change that the inflow does not explain is
-// the run's error. Integrals are computed at the start, in every 16th step, at frames and at the end.
+// the run's error. Integrals are computed at the start, in every 16th step (not in parallel (MPI)), at frames, at the end.
 #pragma once
 #include "core/solver.hpp"
 #include "sim/simulation.hpp"

@@ -454,7 +454,7 @@ surfaces | surfaces_water) # the liquid's surface, which all make together, by e
     poisoned 3 1 "$water" $(by density)
     poisoned 3 1 "$water_deep" $(by density)
     ends 0 over 2 "$weir" run "$water" $(by level_set) --explain
-    says "a surface by level_set, each frame"
+    says "surface reconstruction by level_set, per frame"
     ;;
 storage) # each rank holds its own planes and those near its cuts, by its own count and as the system sees it
     cat >plume.toml <<-END

@@ -78,11 +78,11 @@ TEST("a body that begins through a wall, in a solid or in another body is refuse
             return "solids = [ { shape = \"box\", min = [" + low + (dim == 2 ? "" : ", 0.0") + "], max = [" + high +
                    (dim == 2 ? "" : ", 4.0") + "] } ]";
         };
-        says(dim, ball + at + box("0.0, 0.0", "4.0, 0.6"), "bodies[0] (\"float\") begins 0.1 m inside solids[0]");
+        says(dim, ball + at + box("0.0, 0.0", "4.0, 0.6"), "bodies[0] (\"float\") overlaps solids[0] by 0.1 m");
         says(dim, ball + at + box("0.0, 0.0", "4.0, 0.5"), "accepted");
-        says(dim, ball + at + box("0.0, 0.0", "4.0, 4.0"), "m inside solids[0]");   // it is wholly inside
-        says(dim, ball + at + box("0.97, 0.7", "1.0, 1.9"), "m inside solids[0]");  // a plate through it
-        says(dim, ball + at + box("0.0, 1.2", "0.9, 1.23"), "m inside solids[0]");
+        says(dim, ball + at + box("0.0, 0.0", "4.0, 4.0"), "overlaps solids[0] by ");   // it is wholly inside
+        says(dim, ball + at + box("0.97, 0.7", "1.0, 1.9"), "overlaps solids[0] by ");  // a plate through it
+        says(dim, ball + at + box("0.0, 1.2", "0.9, 1.23"), "overlaps solids[0] by ");
     }
     // Two bars that cross away from where they have contact spheres: 0.01 m is the width of each.
     says(2,

@@ -363,9 +363,9 @@ TEST("devices and the reference refuse the hand by name, and keyframes that say 
     EXPECT_NE(
         said(box<2>("pbf", 0.002, "scheme.backend = \"reference\"\n" + hand(push))).find("the backend reference has no effect \"hand\""),
         std::string::npos);
-    EXPECT_NE(
-        said(box<2>("pbf", 0.002, hand(keyframe(0, "heat", "[0.4, 0.5]", 0.2, "temperature = 300.0")))).find("no \"heat\" in this scene"),
-        std::string::npos);
+    EXPECT_NE(said(box<2>("pbf", 0.002, hand(keyframe(0, "heat", "[0.4, 0.5]", 0.2, "temperature = 300.0"))))
+                  .find("no action \"heat\" in this scene"),
+              std::string::npos);
     EXPECT_NE(said(box<2>("pbf", 0.002, hand("{ time = 0.0, radius = 0.1 }"))).find("keyframes[0] has no \"centre\""), std::string::npos);
     EXPECT_NE(said(box<2>("pbf", 0.002, hand(push + ", { time = 0.1, kind = \"off\" }"))).find("before that of the previous keyframe"),
               std::string::npos);

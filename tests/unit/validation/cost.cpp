@@ -155,7 +155,8 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
               "Not reached by coarse.");
     EXPECT_EQ(sentences[2],
               "1 of 3 configurations run in real time; the most accurate of them is coarse: e = 0.5, for 8.33 ms of each 16.7 ms frame.");
-    EXPECT_EQ(sentences[3], "From coarse, the cheapest, to fine, the most accurate, the error falls 5 times for 4 times the time.");
+    EXPECT_EQ(sentences[3],
+              "From coarse, the cheapest, to fine, the most accurate, the error falls by a factor of 5 for 4 times the time.");
     EXPECT_EQ(sentences[4], "1 of 4 configurations failed: see the table.");
     result.study.good_enough = 0.01;
     EXPECT_EQ(advice(result)[0],
