@@ -19,7 +19,7 @@ namespace weir {
 /// advected fields before they act on the flow), implicit (linear solves after all explicit rates), finish (after the projection).
 enum class Stage { source, force, carried, implicit, finish };
 inline constexpr int stage_count = 5;
-inline constexpr std::array<const char*, stage_count> stage_names{"source", "force", "carried", "implicit", "finish"};
+inline constexpr std::array<const char*, stage_count> stage_names{"source", "force", "carried", "implicit", "finish"};  ///< by Stage
 
 /// The fields that effects request, by name. Two effects that need the same field share it.
 class FieldPlan {

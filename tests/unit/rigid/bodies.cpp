@@ -109,7 +109,7 @@ TEST("what cannot be a body is refused, with the reason") {
     };
     says(2, "bodies = [ { shape = \"sphere\", centre = [1.0, 1.0], radius = 0.5 } ]", "neither density nor mass");
     says(2, "bodies = [ { shape = \"sphere\", centre = [1.0, 1.0], radius = 0.5, mass = 1.0, density = 1.0 } ]", "a mass and a density");
-    says(2, "bodies = [ { shape = \"plane\", point = [1.0, 1.0], normal = [0.0, 1.0], density = 1.0 } ]", "has no end");
+    says(2, "bodies = [ { shape = \"plane\", point = [1.0, 1.0], normal = [0.0, 1.0], density = 1.0 } ]", "is unbounded");
     says(2, "bodies = [ { shape = \"sphere\", centre = [9.0, 1.0], radius = 0.5, density = 1.0 } ]", "outside the domain");
     says(2, "bodies = [ { shape = \"sphere\", centre = [1.0, 1.0], radius = 0.5, density = 1.0, spin = [0.0, 0.0, 1.0] } ]",
          "in 2D a body turns");
