@@ -33,7 +33,7 @@ struct StepReport {
     real density_error = not_applicable;      // particle solvers: mean compression
     real max_density_error = not_applicable;  // particle solvers: max compression
     int viscous_iterations = 0;               // of the solve for the friction of a liquid with a free surface
-    int viscous_turns = 0;                    // number of repeated coupled solves for friction and pressure
+    int viscous_coupling_iterations = 0;      // number of repeated coupled solves for friction and pressure
 };
 
 enum class Where { cell, face, particle };

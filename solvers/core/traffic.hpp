@@ -17,13 +17,13 @@ struct PlaneSize {
 
 /// The properties of one step that its messages depend on.
 struct StepShape {
-    int iterations = 1;          // of the solve for the pressure or the constraints
-    int cells_crossed = 1;       // by the fastest flow, rounded up
-    std::int64_t step = 1;       // its number: some quantities are reduced only every few steps
-    double beside = 0;           // particles that a neighbour reads, where known; 0: the mean number in these planes
-    double particles = 0;        // total number, for particle solvers
-    int viscous_iterations = 1;  // of the viscosity solve, where there is one
-    int viscous_turns = 0;       // repeated coupled solves after the first
+    int iterations = 1;                   // of the solve for the pressure or the constraints
+    int cells_crossed = 1;                // by the fastest flow, rounded up
+    std::int64_t step = 1;                // its number: some quantities are reduced only every few steps
+    double beside = 0;                    // particles that a neighbour reads, where known; 0: the mean number in these planes
+    double particles = 0;                 // total number, for particle solvers
+    int viscous_iterations = 1;           // of the viscosity solve, where there is one
+    int viscous_coupling_iterations = 0;  // repeated coupled solves after the first
 };
 
 /// What a rank sends in a step: halo exchanges with its neighbours, and collective communication.

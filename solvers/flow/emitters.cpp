@@ -100,7 +100,7 @@ void Emitters<D>::apply(MacState<D>& s, real) {
                 for (const std::size_t i : set.entries) s.u[set.axis][i] = set.value;
             }
     }
-    for (auto& field : s.fields) field.hold();
+    for (auto& field : s.fields) field.enforce_sources();
 }
 
 /// No step crosses the time at which an emitter opens: its heating and forces are unknown before.

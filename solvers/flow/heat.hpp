@@ -36,10 +36,10 @@ public:
     /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it (conduction.hpp).
     void conduct(MacState<D>& s, real dt);
     /// u += dt g ∫β dT along y, β the substance's thermal expansion, from its melting point (Boussinesq); no force in ice.
-    void lift(MacState<D>& s, real dt) const;
-    bool lifts() const { return lightness_.has_value(); }
+    void apply_buoyancy(MacState<D>& s, real dt) const;
+    bool has_buoyancy() const { return lightness_.has_value(); }
     /// Multiplies u* by β and sets the state's mobility to β. Returns whether β may have changed.
-    bool slow(MacState<D>& s, real dt);
+    bool apply_ice_drag(MacState<D>& s, real dt);
     /// Stability limit of explicit conduction [s]; max_dt adds the time to the next switching of a heater.
     real stable_dt(const MacState<D>& s) const;
     real max_dt(const MacState<D>& s) const;

@@ -27,20 +27,20 @@ StepReport FlowSolver<D>::step(real dt) {
         const real part = stage.fraction() * dt;
         remember(dt);  // uⁿ, qⁿ with their ghosts
         if (walls_ && !walls_->found()) meet_walls(t, t);
-        depart(dt);                   // u += dt f(uⁿ, qⁿ): all of it in flux form, half of it for MacCormack
-        advect_fields(dt);            // Dq/Dt = 0    only fields requested by an effect
-        advect_velocity(dt);          // Du/Dt = 0
-        blend(stage);                 // γ and ζ of a Runge-Kutta stage
-        apply(Stage::carried, part);  // (I − dt κ∇²) q = ...
-        conduct(part);                // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
-        arrive(dt);                   // u += the rest of dt f(u, q)
-        if (state_.grip) rub(t + part, part);
+        explicit_terms_before_advection(dt);  // u += dt f(uⁿ, qⁿ): all of it in flux form, half of it for MacCormack
+        advect_fields(dt);                    // Dq/Dt = 0    only fields requested by an effect
+        advect_velocity(dt);                  // Du/Dt = 0
+        blend(stage);                         // γ and ζ of a Runge-Kutta stage
+        apply(Stage::carried, part);          // (I − dt κ∇²) q = ...
+        conduct(part);                        // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
+        explicit_terms_after_advection(dt);   // u += the rest of dt f(u, q)
+        if (state_.no_slip_walls) move_no_slip_bodies(t + part, part);
         if (walls_ && solids_.moving()) meet_walls(t + part, t);
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
-        if (walls_) walls_->hold(state_, part / state_.rho);
+        if (walls_) walls_->enforce_no_slip(state_, part / state_.rho);
         move_solids(t += part, part);  // u·n = u_solid·n
         project(part);                 // ∇·u = 0
-        hold();                        // values prescribed by emitters and solids
+        enforce_sources();             // values prescribed by emitters and solids
     }
     apply(Stage::finish, dt);
     if (solids_.moving()) clear_solids();
@@ -247,7 +247,7 @@ void FlowSolver<D>::remember(real dt) {
     set_reach(planes_reached(dt * fastest, state_.extent()[D - 1]));
     fill_field_planes();
     fill_end_planes(remembered_, planes_to_extend());
-    solids_.know(state_, detail::own_share.reach + 3);
+    solids_.fill_ghosts(state_, detail::own_share.reach + 3);
     solids_.extend_velocity(state_);
     extend_fields();
 }
@@ -286,32 +286,33 @@ void FlowSolver<D>::refresh_fields() {
 
 /// Bodies move before friction, which uses their new position.
 template <int D>
-void FlowSolver<D>::rub(real t, real dt) {
+void FlowSolver<D>::move_no_slip_bodies(real t, real dt) {
     bodies_->leave(state_, dt);
     place_solids(t, dt);
     const auto timed = passes_.time("solids");
-    bodies_->grip(state_, solids_, dt);
+    bodies_->set_no_slip_walls(state_, solids_, dt);
 }
 
 /// In flux form all explicit rates use the fields before the step. The trapezoidal rule along trajectories applies half of each term at the
 /// departure point: advected fields contain it.
 template <int D>
-void FlowSolver<D>::depart(real dt) {
+void FlowSolver<D>::explicit_terms_before_advection(real dt) {
     refresh_fields();
     if (options_.scheme == Scheme::conservative) {
-        lift(dt);
+        apply_buoyancy(dt);
         return apply(Stage::force, dt);
     }
     if (options_.scheme != Scheme::maccormack) return;
-    for (const Stage stage : {Stage::implicit, Stage::force, Stage::carried}) effects_.depart(stage, state_, 0.5 * dt, passes_);
-    lift(0.5 * dt);
-    if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force) || (heat_ && heat_->lifts())) {
+    for (const Stage stage : {Stage::implicit, Stage::force, Stage::carried})
+        effects_.apply_before_advection(stage, state_, 0.5 * dt, passes_);
+    apply_buoyancy(0.5 * dt);
+    if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force) || (heat_ && heat_->has_buoyancy())) {
         sync_periodic(state_.u, state_.sides);
         solids_.set_faces(state_);  // forces do not change the velocity of solids
     }
     if (effects_.empty(Stage::carried)) return;
     const auto timed = passes_.time("ghosts");
-    for (auto& field : state_.fields) field.hold();
+    for (auto& field : state_.fields) field.enforce_sources();
     fill_field_planes();
     fill_end_planes(remembered_fields_, planes_to_extend());
     extend_fields();
@@ -319,11 +320,11 @@ void FlowSolver<D>::depart(real dt) {
 
 /// Advected fields are final here: forces use the temperature at the end of the step.
 template <int D>
-void FlowSolver<D>::arrive(real dt) {
+void FlowSolver<D>::explicit_terms_after_advection(real dt) {
     if (options_.scheme == Scheme::conservative) return;
     const real part = options_.scheme == Scheme::maccormack ? 0.5 * dt : dt;
     refresh_fields();
-    lift(part);
+    apply_buoyancy(part);
     apply(Stage::force, part);
     sync_periodic(state_.u, state_.sides);
 }
@@ -397,9 +398,9 @@ void FlowSolver<D>::meet_walls(real now, real last) {
     const auto timed = passes_.time("solids");
     solids_.solids().set_time(now);
     walls_->find(state_, solids_, now, last);
-    const bool grips = state_.grip && !state_.grip->takes_part[0].empty();  // once bodies have been found
-    for (int a = 0; grips && a < D; ++a)
-        for (const HeldFace<D>& f : walls_->held(a)) state_.grip->takes_part[static_cast<std::size_t>(a)](f.face) = 0;
+    const bool found = state_.no_slip_walls && !state_.no_slip_walls->takes_part[0].empty();  // once bodies have been found
+    for (int a = 0; found && a < D; ++a)
+        for (const HeldFace<D>& f : walls_->held(a)) state_.no_slip_walls->takes_part[static_cast<std::size_t>(a)](f.face) = 0;
 }
 
 /// Friction force on no-slip solids. In parallel, the stress at a subdomain boundary needs the values of both sides.
@@ -412,7 +413,7 @@ Vec<D> FlowSolver<D>::friction() {
 
 template <int D>
 void FlowSolver<D>::move_solids(real t, real dt) {
-    if (!state_.grip) place_solids(t, dt);
+    if (!state_.no_slip_walls) place_solids(t, dt);
     if (walls_ && solids_.moving()) meet_walls(t, t);  // the faces that are open now
     solids_.set_faces(state_);
 }
@@ -421,7 +422,7 @@ template <int D>
 void FlowSolver<D>::place_solids(real t, real dt) {
     if (!solids_.any()) return;
     const auto timed = passes_.time("solids");
-    if (bodies_) bodies_->fly(solids_, dt);
+    if (bodies_) bodies_->advance_free(solids_, dt);
     if (!solids_.moving()) return;
     const AllPlanes all(!held_.alone());
     solids_.place(state_, t);
@@ -436,21 +437,21 @@ void FlowSolver<D>::conduct(real dt) {
 }
 
 template <int D>
-void FlowSolver<D>::lift(real dt) {
-    if (heat_) heat_->lift(state_, dt);
+void FlowSolver<D>::apply_buoyancy(real dt) {
+    if (heat_) heat_->apply_buoyancy(state_, dt);
 }
 
 /// Drag of ice reduces the response to pressure: sets the face coefficients of the matrix.
 template <int D>
-void FlowSolver<D>::slow(real dt) {
+void FlowSolver<D>::apply_ice_drag(real dt) {
     if (!heat_) return;
     const auto timed = passes_.time("ice");
-    if (heat_->slow(state_, dt)) projection_.set_matrix(state_);
+    if (heat_->apply_ice_drag(state_, dt)) projection_.set_matrix(state_);
 }
 
 template <int D>
 void FlowSolver<D>::project(real dt) {
-    slow(dt);
+    apply_ice_drag(dt);
     const auto timed = passes_.time("project");
     report_ = &explained_by_room(state_, solids_,
                                  [&]() -> const poisson::Report& { return projection_.project(state_, dt, bodies_.get(), &solids_); });
@@ -461,8 +462,8 @@ void FlowSolver<D>::project(real dt) {
 /// Emitted values are prescribed after each (sub)step: the next inflow from there does not depend on its length. Smoke is removed from
 /// solids. For moving solids this is recorded once, at the end of the step.
 template <int D>
-void FlowSolver<D>::hold() {
-    for (auto& field : state_.fields) field.hold();
+void FlowSolver<D>::enforce_sources() {
+    for (auto& field : state_.fields) field.enforce_sources();
     if (!solids_.moving()) clear_solids();
 }
 
@@ -627,10 +628,11 @@ void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
         friction = walls_->friction(state_);
     }
     const std::string force_unit = D == 2 ? "N/m" : "N", torque_unit = D == 2 ? "N" : "N m";
-    const auto add = [&](const std::string& quantity, const std::string& letter, const std::string& unit, real by_pressure, real rubbed) {
-        list.push_back({"solid_" + quantity + letter, unit, by_pressure + rubbed});
+    const auto add = [&](const std::string& quantity, const std::string& letter, const std::string& unit, real by_pressure,
+                         real by_friction) {
+        list.push_back({"solid_" + quantity + letter, unit, by_pressure + by_friction});
         list.push_back({"solid_pressure_" + quantity + letter, unit, by_pressure});
-        list.push_back({"solid_friction_" + quantity + letter, unit, rubbed});
+        list.push_back({"solid_friction_" + quantity + letter, unit, by_friction});
     };
     for (int a = 0; a < D; ++a) {
         const std::string letter(1, "xyz"[a]);

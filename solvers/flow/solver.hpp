@@ -71,9 +71,9 @@ private:
     int planes_to_extend() const;
     void fill_field_planes();
     void extend_fields();
-    void rub(real t, real dt);
-    void depart(real dt);
-    void arrive(real dt);
+    void move_no_slip_bodies(real t, real dt);
+    void explicit_terms_before_advection(real dt);
+    void explicit_terms_after_advection(real dt);
     void advect_fields(real dt);
     void advect_velocity(real dt);
     void blend(const Substep& stage);
@@ -82,10 +82,10 @@ private:
     void move_solids(real t, real dt);
     void place_solids(real t, real dt);
     void conduct(real dt);
-    void lift(real dt);
-    void slow(real dt);
+    void apply_buoyancy(real dt);
+    void apply_ice_drag(real dt);
     void project(real dt);
-    void hold();
+    void enforce_sources();
     void clear_solids();
     void remember_solids();
     real rate(real fluid) const;

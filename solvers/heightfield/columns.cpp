@@ -145,14 +145,14 @@ StepReport Columns::step(real dt) {
         });
         through_ *= left;
     }
-    if (state_.sides.any_open()) let_out(dt);
+    if (state_.sides.any_open()) outflow_at_open_sides(dt);
     state_.time += dt;
     if (++steps_ % checked_every == 0) check();
     return {.dt = dt, .cfl = dt / limit_, .iterations = floats_.iterations()};
 }
 
 /// Open sides absorb waves: the discharge through the side is c times the wave's height, so dw/dt = -c/dx w there.
-void Columns::let_out(real dt) {
+void Columns::outflow_at_open_sides(real dt) {
     const Plane& plane = state_.plane;
     const auto slow = [&](int i, int r, real d) -> real {
         if (!is_own_plane(r)) return 0;

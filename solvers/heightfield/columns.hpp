@@ -32,7 +32,7 @@ public:
 
 private:
     void make_stiffness();
-    void let_out(real dt);
+    void outflow_at_open_sides(real dt);
     void gather_taken();
     void bring() const;
     void check() const;

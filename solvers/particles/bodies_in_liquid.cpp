@@ -119,7 +119,7 @@ Vec<D> BodiesInLiquid<D>::change_at(const Meeting<D>& m) const {
 
 template <int D>
 Vec<D> BodiesInLiquid<D>::across(const Meeting<D>& m) const {
-    if (m.rub == 0) return {};
+    if (m.friction == 0) return {};
     const Vec<D> u = change_at(m);
     return u - dot(u, m.pull) / dot(m.pull, m.pull) * m.pull;
 }
@@ -139,8 +139,8 @@ void BodiesInLiquid<D>::sum_up() {
         const Twist push = seen(b, m.at, m.given), w = seen(b, m.at, m.pull);
         for (std::size_t k = 0; k < n; ++k) impulse_[b][k] -= mass_ * push[k];
         const real length2 = dot(m.pull, m.pull);
-        if (m.stiff > 0 || m.rub > 0) resist(matrix_[b], w, mass_ * (m.stiff - (m.rub > 0 ? m.rub / length2 : 0)));
-        for (int a = 0; a < D && m.rub > 0; ++a) resist(matrix_[b], seen(b, m.at, Vec<D>::unit(a)), mass_ * m.rub);
+        if (m.stiff > 0 || m.friction > 0) resist(matrix_[b], w, mass_ * (m.stiff - (m.friction > 0 ? m.friction / length2 : 0)));
+        for (int a = 0; a < D && m.friction > 0; ++a) resist(matrix_[b], seen(b, m.at, Vec<D>::unit(a)), mass_ * m.friction);
     }
 }
 
@@ -215,7 +215,7 @@ void BodiesInLiquid<D>::move(Domain<D>& domain, real dt) {
         rigid::Body<D>& body = (*bodies_)[b];
         body.at = start_[b].at, body.orientation = start_[b].orientation;
         for (std::size_t k = 0; k < n; ++k) body.velocity[k] = velocity_[n * b + k];
-        body.fly(dt, dry_[b] ? -1.0 * gravity_ : Vec<D>{});  // the velocity already includes gravity in this step
+        body.advance_free(dt, dry_[b] ? -1.0 * gravity_ : Vec<D>{});  // the velocity already includes gravity in this step
     }
     bodies_->place(domain.solids);
 }

@@ -30,7 +30,7 @@ struct Meeting {
     real part = 0, open = 1;   // the kernel's part inside the body, and its fraction not hidden by walls
     Vec<D> given{};            // velocity change of the particle due to the body [m/s]
     real stiff = 0;            // response to the body's velocity change along `pull` [m^2 or 1], and across it
-    real rub = 0;
+    real friction = 0;
 };
 
 template <int D>
@@ -60,7 +60,7 @@ public:
     /// change of their particles.
     void exchange(Domain<D>& domain, real dt, bool heavy);
     /// The part of that due to the body's own velocity change.
-    Vec<D> back(const Meeting<D>& m) const { return m.stiff * closing(m) * m.pull + m.rub * across(m); }
+    Vec<D> back(const Meeting<D>& m) const { return m.stiff * closing(m) * m.pull + m.friction * across(m); }
     /// pull . change of the body's velocity at the particle.
     real closing(const Meeting<D>& m) const { return dot(m.pull, change_at(m)); }
     /// Moves the bodies from their positions at the start of the step with their velocities.

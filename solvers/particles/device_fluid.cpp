@@ -233,7 +233,7 @@ template <int D>
 void DeviceFluid<D>::predict(real dt) {
     pass_time(dt);
     run("predict", {count(), stride_, state_params, poses, dt, pull(dt), clamps, x, v, x_star});
-    hold_prediction(dt);
+    keep_frozen_prediction(dt);
 }
 
 template <int D>

@@ -99,7 +99,7 @@ public:
         return memory;
     }
     /// Adds particles that enter in (time, time + dt], and removes those in sinks.
-    void let_in(real dt);
+    void add_inflow(real dt);
     /// v += dt f with the scene's forces; x* = x + dt v.
     void predict(real dt);
     /// Advances time and moves the solids.
@@ -117,12 +117,12 @@ public:
     /// After the neighbour search: the rest densities of particles that may boil.
     void expand();
     /// Frozen particles do not move: they have zero velocity and keep their position; or they move in pieces.
-    void hold();
-    void hold_again();
-    void hold_prediction(real dt);
-    void hold_places();
+    void stop_frozen();
+    void stop_frozen_again();
+    void keep_frozen_prediction(real dt);
+    void keep_frozen_positions();
     /// Updates the pieces of ice after the positions, whose displacements took dt; also after a drift of dt.
-    void arrive(real dt);
+    void finish_ice_motion(real dt);
     void carry_ice(real dt);
     bool ice_moves() const { return ice_ && effects_.heat->frozen() > 0; }
     /// Counts a step. At intervals the state is reordered to the sorted order for locality. Particles beyond sides are wrapped or removed.

@@ -79,7 +79,7 @@ void DeviceFluid<D>::meet_solids() {
 template <int D>
 void DeviceFluid<D>::leave_solids() {
     if (solid_) run("leave_solids", {count(), state_params, solid_series_, poses, clamps, a, near_solid, terms});
-    hold_places();
+    keep_frozen_positions();
 }
 
 template <int D>

@@ -122,14 +122,14 @@ void HostSolver<D>::take_heat(const scene::Scene& scene) {
 }
 
 template <int D>
-void HostSolver<D>::hold() {
+void HostSolver<D>::stop_frozen() {
     if (!this->heat_ || this->heat_->count_frozen(fluid_) == 0) return;
     if (this->ice_) return this->ice_->find(fluid_);
-    hold_again();
+    stop_frozen_again();
 }
 
 template <int D>
-void HostSolver<D>::hold_again() {
+void HostSolver<D>::stop_frozen_again() {
     if (!this->heat_ || this->heat_->frozen() == 0) return;
     if (this->ice_) return this->ice_->move_as_one(fluid_);
     parallel_for(0, fluid_.count(), [&](int i) {

@@ -114,10 +114,10 @@ protected:
     void restore_state(const Checkpoint& from) final;
     void take_heat(const scene::Scene& scene);
     /// Frozen particles get zero velocity, or that of their piece, which is found here; other changes of their velocities are discarded.
-    void hold();
+    void stop_frozen();
     /// The same where no particle has melted or frozen since.
-    void hold_again();
-    /// Returns whether particle i of the state is frozen and fixed, if hold() found any.
+    void stop_frozen_again();
+    /// Returns whether particle i of the state is frozen and fixed, if stop_frozen() found any.
     bool held(int i) const {
         if (!this->heat_ || this->heat_->frozen() == 0) return false;
         return this->ice_ ? this->ice_->fixed(i) : this->heat_->frozen(fluid_.enthalpy[static_cast<std::size_t>(i)]);

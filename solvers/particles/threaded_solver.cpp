@@ -48,7 +48,7 @@ void ThreadedSolver<D>::find_pairs(std::array<std::vector<real>, D>& at, real ra
 }
 
 template <int D>
-void ThreadedSolver<D>::dismiss() {
+void ThreadedSolver<D>::drop_ghosts() {
     if (fluid_.shared) fluid_.resize(migration_.own());
 }
 

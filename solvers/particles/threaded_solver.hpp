@@ -32,10 +32,10 @@ protected:
         if (sources_) sources_->pour_and_drain(fluid_);
         clamps_before_ = fluid_.clamps;  // emitters are replicated on all ranks
     }
-    /// Finds the pairs at these positions, closer than the radius [m]. In parallel particles migrate first, and until dismiss() the state
-    /// also contains ghost particles, for which the positions and these arrays of the state are valid.
+    /// Finds the pairs at these positions, closer than the radius [m]. In parallel particles migrate first, and until drop_ghosts() the
+    /// state also contains ghost particles, for which the positions and these arrays of the state are valid.
     void find_pairs(std::array<std::vector<real>, D>& at, real radius, std::initializer_list<std::vector<real>*> read);
-    void dismiss();
+    void drop_ghosts();
     /// Number of state particles that this rank owns.
     int own() const { return fluid_.shared ? migration_.own() : fluid_.count(); }
     /// Ends a step: counts it, reorders the state at intervals, wraps or removes particles beyond sides. excess: of own particles;

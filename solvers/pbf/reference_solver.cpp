@@ -59,7 +59,7 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
         for (std::size_t i = 0; i < multiplier_.size(); ++i) fluid_.carried[i] = multiplier_[i] / (slow * slow);
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) bodies_->end(fluid_.domain, dt, slow), carried_dt_ = 0;
-    this->hold_again();
+    this->stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     last_dt_ = dt;
     const real speed = speed_ = this->speed();
@@ -83,12 +83,12 @@ void ReferencePbfSolver<D>::predict(real dt) {
         fluid_.time += dt;
         fluid_.domain.solids.set_time(fluid_.time);
         for (int i = 0; i < fluid_.count(); ++i) Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * fluid_.gravity);
-        this->hold();  // frozen particles
+        this->stop_frozen();  // frozen particles
         predicted_.clear(), x_star_.clear();
         for (int i = 0; i < fluid_.count(); ++i)
             predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
         if (this->ice_moves()) {
-            this->ice_->fly(dt);
+            this->ice_->advance_free(dt);
             this->ice_->each_place([&](int i, const Vec<D>& place) { predicted_[static_cast<std::size_t>(i)] = place; });
         }
         if (carried_dt_ > 0) push_bodies_ahead();
@@ -215,7 +215,7 @@ void ReferencePbfSolver<D>::update(real dt, real slow) {
         Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[at] = fluid_.rho0 * density_[at];
     }
-    if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
+    if (this->ice_moves() && dt > 0) this->ice_->finish_motion(fluid_, slow);
 }
 
 template <int D>

@@ -24,7 +24,7 @@ template <int D>
 StepReport PbfSolver<D>::step(real dt) {
     this->pour_and_drain(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
-    this->hold();  // frozen particles
+    this->stop_frozen();  // frozen particles
     if (bodies_) start_bodies(dt);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
@@ -42,8 +42,8 @@ StepReport PbfSolver<D>::step(real dt) {
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
-    this->dismiss();
-    this->hold_again();
+    this->drop_ghosts();
+    this->stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     last_dt_ = dt;
     const auto end = this->end_step(excess(), 0);
@@ -52,8 +52,8 @@ StepReport PbfSolver<D>::step(real dt) {
 }
 
 template <int D>
-void PbfSolver<D>::stay() {
-    this->hold(), predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
+void PbfSolver<D>::predict_at_rest() {
+    this->stop_frozen(), predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
 }
 
 template <int D>
@@ -75,7 +75,7 @@ void PbfSolver<D>::predict(real dt) {
     });
     if (carried_dt_ > 0) push_bodies_ahead();
     if (!this->ice_moves()) return;
-    this->ice_->fly(dt);
+    this->ice_->advance_free(dt);
     this->ice_->each_place([&](int i, const Vec<D>& place) { particles::Fluid<D>::put(x_star_, i, place); });
 }
 
@@ -173,7 +173,7 @@ void PbfSolver<D>::correct() {
 
 /// Frozen particles keep their position of the neighbour search, or move with their piece.
 template <int D>
-void PbfSolver<D>::hold_places() {
+void PbfSolver<D>::keep_frozen_positions() {
     if (!this->heat_ || this->heat_->frozen() == 0) return;
     float* x = pairs_.a();
     pairs_.each([&](int k) {
@@ -198,7 +198,7 @@ void PbfSolver<D>::collide() {
         push_bodies();
     else
         solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
-    hold_places();
+    keep_frozen_positions();
     pairs_.refresh(pairs_.a(), true);
 }
 
@@ -268,9 +268,9 @@ void PbfSolver<D>::update(real dt, real slow) {
         particles::Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[static_cast<std::size_t>(i)] = fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
     });
-    if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
+    if (this->ice_moves() && dt > 0) this->ice_->finish_motion(fluid_, slow);
     if (dt > 0) return;
-    this->dismiss();  // the last use of ghost particles
+    this->drop_ghosts();  // the last use of ghost particles
     this->sum_up_clamps();
 }
 

@@ -62,9 +62,9 @@ public:
         return &report_;
     }
 
-    void aim(real tolerance) override {
+    void set_tolerance(real tolerance) override {
         options_.tolerance = tolerance;
-        if (algebraic_ != nullptr) algebraic_->aim(tolerance);
+        if (algebraic_ != nullptr) algebraic_->set_tolerance(tolerance);
     }
 
     std::size_t bytes() const override { return problem_.bytes() + geometric_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0); }

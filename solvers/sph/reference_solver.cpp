@@ -53,7 +53,7 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     find_neighbours();
     find_densities();                                // eq. 3 and 12
     kick(dt);                                        // eq. 10 and 14
-    this->hold();                                    // frozen particles
+    this->stop_frozen();                             // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) sph::move_bodies(*bodies_, fluid_, beside_bodies_, dt);
     drift(fluid_, dt);

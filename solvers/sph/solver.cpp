@@ -55,14 +55,14 @@ StepReport SphSolver<D>::step(real dt) {
     effects_.apply(Stage::force, flow_, dt, passes_);  // gravity and other fields
     kick(dt);
     if (bodies_) carry_bodies(dt);
-    this->hold();                                    // frozen particles
+    this->stop_frozen();                             // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
     if (bodies_) give_back(*bodies_, fluid_);           // by particles inside bodies
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
-    this->dismiss();
-    this->hold_again();
+    this->drop_ghosts();
+    this->stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     const auto end = this->end_step(particles::excess_of(fluid_, rho_rest_, this->vapour()), max_acceleration_);
     speed_ = end.speed, max_acceleration_ = end.acceleration;

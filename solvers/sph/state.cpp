@@ -147,7 +147,7 @@ Vec<D> meet_body(const Options& o, const particles::plain::SphParams& p, const p
         const Vec<D> slip = solids.velocity(m.at) - fluid.velocity(i);
         const real drag = 2 * o.viscosity * plane / m.open / std::max<real>(phi, p.closest);
         by += drag * (slip - dot(slip, normal) * normal);
-        m.rub = dt * drag;
+        m.friction = dt * drag;
     }
     m.given = dt * (by + beyond);
     return beyond;

@@ -100,7 +100,7 @@ void SolidPlacement<D>::open(MacState<D>& s, int planes) {
 }
 
 template <int D>
-void SolidPlacement<D>::know(MacState<D>& s, int planes, const std::function<void()>& see) {
+void SolidPlacement<D>::fill_ghosts(MacState<D>& s, int planes, const std::function<void()>& see) {
     if (!any() || !corner_.store().windowed() || planes <= known_) return;
     const Grid<poisson::Cell, D> before = s.cells;
     std::vector<char> held(static_cast<std::size_t>(s.cells.extent()[D - 1]));

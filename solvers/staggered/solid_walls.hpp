@@ -22,9 +22,9 @@ template <int D>
 struct SolidWall {
     int across, way;
     bool no_slip;
-    real nearer;     // 1/θ; for a free-slip wall D n_a²
-    real now, last;  // its velocity along the component, now and at the previous time [m/s]
-    real turn;       // ∂v_across/∂x_component of its rigid motion [1/s]
+    real nearer;         // 1/θ; for a free-slip wall D n_a²
+    real now, last;      // its velocity along the component, now and at the previous time [m/s]
+    real rotation_rate;  // ∂v_across/∂x_component of its rigid motion [1/s]
 };
 
 /// A node with walls beside it: the entries [begin, end).
@@ -66,7 +66,7 @@ public:
     }
     std::span<const HeldFace<D>> held(int a) const { return held_[static_cast<std::size_t>(a)]; }
     /// u = u_solid + `factor` ∇p on held faces: the projection subtracts the gradient again where the pressure does not change.
-    void hold(MacState<D>& s, real factor) const;
+    void enforce_no_slip(MacState<D>& s, real factor) const;
     /// Friction force and torque [N, N m], with second-order stress at the wall.
     SolidLoad<D> friction(const MacState<D>& s) const;
     std::size_t bytes() const;

@@ -25,7 +25,7 @@ void TallCells<D>::bring_faces(real dt) {
     const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];
     reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
     refresh_faces(state_.u, frame_, reach_);
-    solids_.know(state_, reach_);
+    solids_.fill_ghosts(state_, reach_);
 }
 
 /// Gathers the planes of other ranks for reading whole fields; collective.

@@ -41,7 +41,7 @@ public:
     /// ρ dH/dt = ∇·(k ∇T) + q in the liquid of s.cells, with this volume and surface area.
     void conduct(const MacState<D>& s, real volume, real area, real dt);
     /// Multiplies u* by β and sets s.mobility to β. Returns whether any face has drag.
-    bool slow(MacState<D>& s, real dt);
+    bool apply_ice_drag(MacState<D>& s, real dt);
 
     /// Time to the next switching of a heater or keyframe, and the limit of explicit exchange through the surface [s].
     real max_dt(const MacState<D>& s, real area) const;

@@ -161,7 +161,7 @@ void SurfacePressure<D>::set_rhs(const MacState<D>& state, const LevelSet<D>& su
 }
 
 template <int D>
-void SurfacePressure<D>::hold_back(const MacState<D>& state) {
+void SurfacePressure<D>::apply_drag(const MacState<D>& state) {
     for (int a = 0; a < D; ++a) {
         real* weight = A_.weight[static_cast<std::size_t>(a)].data();
         const real* beta = state.mobility[static_cast<std::size_t>(a)].data();

@@ -8,7 +8,7 @@ namespace weir::water {
 /// Halo exchange of the velocity: as deep as the motion of the step plus the stencil at the end of a trajectory, and one plane for ghost
 /// markers.
 template <int D>
-void Water<D>::bring_faces(real dt) {
+void Water<D>::refresh_velocity(real dt) {
     whole_ = held_.cut().empty(), markers_whole_ = false;
     if (!over_ranks()) return;
     const auto timed = passes_.time("exchange");
@@ -18,14 +18,14 @@ void Water<D>::bring_faces(real dt) {
     const real cells = dt * fastest * frame_.inv_h[D - 1];
     reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
     refresh_faces(state_.u, frame_, reach_);
-    know_solids();
+    fill_solid_ghosts();
 }
 
 /// Extends solids into ghost planes as far as liquid moves, with distributed storage.
 template <int D>
-void Water<D>::know_solids() {
+void Water<D>::fill_solid_ghosts() {
     if (!held_.alone() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
-    solids_.know(state_, reach_, [&] {
+    solids_.fill_ghosts(state_, reach_, [&] {
         for (auto* bytes : {&closed_, &near_solid_}) bytes->store().open(reach_, frame_.periodic(D - 1));
         mark_closed();
     });
@@ -33,7 +33,7 @@ void Water<D>::know_solids() {
 
 /// Removes markers beyond open sides; in parallel also migrates markers. Returns how many there were, and how many have left.
 template <int D>
-std::array<std::int64_t, 2> Water<D>::let_depart() {
+std::array<std::int64_t, 2> Water<D>::migrate_markers() {
     if (!over_ranks()) {
         const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
         return {static_cast<std::int64_t>(all), static_cast<std::int64_t>(departed)};
@@ -111,11 +111,11 @@ void Water<D>::gather_markers() const {
     markers_whole_ = true;
 }
 
-#define WEIR_INSTANTIATE(D)                                      \
-    template void Water<D>::bring_faces(real);                   \
-    template std::array<std::int64_t, 2> Water<D>::let_depart(); \
-    template void Water<D>::check_own() const;                   \
-    template void Water<D>::make_whole() const;                  \
+#define WEIR_INSTANTIATE(D)                                           \
+    template void Water<D>::refresh_velocity(real);                   \
+    template std::array<std::int64_t, 2> Water<D>::migrate_markers(); \
+    template void Water<D>::check_own() const;                        \
+    template void Water<D>::make_whole() const;                       \
     template void Water<D>::gather_markers() const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

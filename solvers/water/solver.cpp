@@ -13,7 +13,7 @@ template <int D>
 StepReport Water<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
     const real kick = to_middle(dt);
-    bring_faces(dt);
+    refresh_velocity(dt);
     move_bodies(dt);
     move_solids(state_.time + dt);
     move_surface(dt);                                   // Dx/Dt = u for markers, Dφ/Dt = 0
@@ -40,7 +40,7 @@ StepReport Water<D>::step(real dt) {
             .residual_after = poisson.residual_after,
             .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]) * (kick / dt),
             .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0,
-            .viscous_turns = friction_ ? friction_->turns : 0};
+            .viscous_coupling_iterations = friction_ ? friction_->iterations : 0};
 }
 
 /// Advances the velocity to the middle of this step. Returns the duration of the forces.
@@ -71,8 +71,8 @@ template <int D>
 void Water<D>::move_bodies(real dt) {
     if (!bodies_) return;
     const auto timed = passes_.time("bodies");
-    if (state_.grip) bodies_->continue_pressure(state_);
-    bodies_->fly(solids_, dt);
+    if (state_.no_slip_walls) bodies_->continue_pressure(state_);
+    bodies_->advance_free(solids_, dt);
 }
 
 template <int D>
@@ -161,10 +161,10 @@ void Water<D>::conduct(real dt) {
 
 /// Drag of ice reduces the response of the velocity to pressure.
 template <int D>
-void Water<D>::slow(real dt) {
+void Water<D>::apply_ice_drag(real dt) {
     if (!heat_) return;
     const auto timed = passes_.time("ice");
-    if (heat_->slow(state_, dt)) pressure_.hold_back(state_);
+    if (heat_->apply_ice_drag(state_, dt)) pressure_.apply_drag(state_);
 }
 
 template <int D>
@@ -203,7 +203,7 @@ void Water<D>::forces(real dt) {
         const auto timed = passes_.time("walls");
         set_fixed_faces();
     }
-    if (viscosity_) rub(dt);
+    if (viscosity_) apply_viscosity(dt);
 }
 
 template <int D>
@@ -217,7 +217,7 @@ poisson::Report Water<D>::project_once(real dt, real kick, bool again) {
 
 template <int D>
 poisson::Report Water<D>::project(real dt, real kick) {
-    slow(kick);
+    apply_ice_drag(kick);
     poisson::Report report = staggered::explained_by_room(state_, solids_, [&] { return project_once(dt, kick, false); });
     if (viscosity_ && !bodies_) report = balance_friction(dt, kick, report);
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);

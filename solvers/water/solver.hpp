@@ -65,10 +65,10 @@ struct WaterOptions {
 template <int D>
 struct StepOfFriction {
     MacVelocity<D> before, forces;  // u at the start of the step; dt f
-    std::array<Grid<real, D>, D> felt;
-    Grid<real, D> p, residual;  // the pressure used in felt; F(p) − p
+    std::array<Grid<real, D>, D> with_pressure;
+    Grid<real, D> p, residual;  // the pressure used in with_pressure; F(p) − p
     AndersonMixing<D> mixing;
-    int turns = 0;  // iterations after the first
+    int iterations = 0;  // iterations after the first
     explicit StepOfFriction(const MacState<D>& state);
     std::size_t bytes() const;
 };
@@ -134,13 +134,13 @@ private:
     void correct_surface(real dt);
     void evaporate(real dt);
     void conduct(real dt);
-    void slow(real dt);
+    void apply_ice_drag(real dt);
     void momentum_to_faces(real dt);
     void remember_velocity();
-    void rub(real dt);
+    void apply_viscosity(real dt);
     poisson::Report balance_friction(real dt, real kick, poisson::Report report);
-    void what_friction_feels(real dt);
-    void rub_again(real dt);
+    void velocity_with_pressure(real dt);
+    void repeat_viscosity(real dt);
     void mix_pressures();
     poisson::Report project_once(real dt, real kick, bool again);
     void forces(real dt);
@@ -149,13 +149,13 @@ private:
     void momentum_to_markers(real dt);
 
     // In parallel (ranks.cpp)
-    void bring_faces(real dt);
-    std::array<std::int64_t, 2> let_depart();
+    void refresh_velocity(real dt);
+    std::array<std::int64_t, 2> migrate_markers();
     void check_own() const;
     void make_whole() const;
     void bring_beside() const;
     void gather_markers() const;
-    void know_solids();
+    void fill_solid_ghosts();
     void restore_markers(const Checkpoint& from);
     const Markers<D>& all_markers() const { return held_.cut().empty() ? markers_ : all_markers_; }
 

@@ -104,7 +104,7 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
 template <int D>
 void Water<D>::pour_and_drain(real dt) {
     const auto timed = passes_.time("sort markers");
-    const auto [all, departed] = let_depart();
+    const auto [all, departed] = migrate_markers();
     if (!keeps_volume_ && departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
     bool pours = false;
     std::int64_t poured = 0;

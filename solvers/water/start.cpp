@@ -88,7 +88,7 @@ void Water<D>::stick_to_bodies(const scene::Scene& scene) {
     for_each_cell(state_.extent(), [&](const Index<D>& I) {
         if (is_liquid(I)) state_.p(I) -= least;
     });
-    viscosity_->hold_bodies(state_);
+    viscosity_->enforce_bodies(state_);
 }
 
 /// Emitters, including inflow sides, which are emitters of one layer of cells.

@@ -53,7 +53,7 @@ public:
         surface_.continue_velocity(tally_, 2);
         sync();
         sync();  // after the forces
-        if (viscous()) rub();
+        if (viscous()) apply_viscosity();
         project();
         surface_.continue_velocity(tally_, surface_.layers - 1);
         sync();
@@ -108,28 +108,28 @@ private:
         sync();  // weights above the last cells
     }
     /// Velocity and liquid fractions at the subdomain boundaries; then per iteration a direction and two inner products.
-    void rub() {
+    void apply_viscosity() {
         tally_.refresh(faces_, 1);
         tally_.refresh({cells_}, 2);
-        continue_felt();
+        continue_with_pressure();
         tally_.refresh(faces_, 1, shape_.viscous_iterations);
-        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + shape_.viscous_turns + 2 * shape_.viscous_iterations);
+        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + shape_.viscous_coupling_iterations + 2 * shape_.viscous_iterations);
         sync(), sync();
     }
     /// Marks and values, two layers.
-    void continue_felt() { tally_.refresh(faces_, 1, 4); }
+    void continue_with_pressure() { tally_.refresh(faces_, 1, 4); }
     /// Coupling iterations of friction and pressure. The estimate is low by some four messages in a thousand where there are any: norms,
     /// mixing of pressures, and the velocity at subdomain boundaries.
     void balance_friction() {
-        const int turns = shape_.viscous_turns;
-        for (int turn = 0; turn <= turns; ++turn) {
-            continue_felt();
+        const int iterations = shape_.viscous_coupling_iterations;
+        for (int iteration = 0; iteration <= iterations; ++iteration) {
+            continue_with_pressure();
             tally_.gather({sizeof(real), faces_[D - 1].count}, 4);
             tally_.refresh(faces_, 1);
-            if (turn == turns) return;
-            const int mixed = std::min(turn - 1, AndersonMixing<D>::depth);
-            if (turn > 0) tally_.gather({sizeof(real), n_[D - 1]}, mixed * (mixed + 3) / 2);
-            if (turn > 0) tally_.refresh({cells_}, 1), continue_felt();
+            if (iteration == iterations) return;
+            const int mixed = std::min(iteration - 1, AndersonMixing<D>::depth);
+            if (iteration > 0) tally_.gather({sizeof(real), n_[D - 1]}, mixed * (mixed + 3) / 2);
+            if (iteration > 0) tally_.refresh({cells_}, 1), continue_with_pressure();
             sync(), sync(), sync();
             solve(1);
         }
@@ -151,7 +151,7 @@ private:
     }
     void project() {
         if (windowed_) poisson::tally_multigrid_setup<D>(n_, periodic_, weight_, runs(), tally_);
-        solve(shape_.iterations - shape_.viscous_turns);
+        solve(shape_.iterations - shape_.viscous_coupling_iterations);
         if (viscous()) balance_friction();
         sync();
         largest(n_[D - 1]);  // maximum divergence

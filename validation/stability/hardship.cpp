@@ -175,8 +175,8 @@ real touching(const Simulation& simulation) {
     const auto touches = [](const rigid::Body<D>& one, const rigid::Body<D>& other) {
         if (norm(one.at - other.at) > 1.01 * (one.radius + other.radius)) return false;
         const auto from = one.pose(), to = other.pose();
-        return std::any_of(one.feelers.begin(), one.feelers.end(), [&](const rigid::Feeler<D>& feeler) {
-            return other.shape->distance(to.to_rest(from.to_world(feeler.at))) - feeler.radius < 0.01 * one.radius;
+        return std::any_of(one.contact_spheres.begin(), one.contact_spheres.end(), [&](const rigid::ContactSphere<D>& sphere) {
+            return other.shape->distance(to.to_rest(from.to_world(sphere.at))) - sphere.radius < 0.01 * one.radius;
         });
     };
     real count = 0;

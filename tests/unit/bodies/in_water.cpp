@@ -275,7 +275,7 @@ bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], densi
     staggered::SolidPlacement<3> placement(staggered::BodiesInFlow<3>::solids(scene, bodies.get()), state);
     bodies->start(state, placement);
     for (int step = 0; step < 60; ++step) {
-        bodies->fly(placement, 0.01);
+        bodies->advance_free(placement, 0.01);
         state.time += 0.01;
         placement.place(state, state.time);
         expect_placed_as_a_whole(state, placement.solids(), scene, true);

@@ -47,12 +47,12 @@ struct InsideFace {
 
 /// A no-slip body in the friction solve: its given data and the resulting impulse.
 template <int D>
-struct Rider {
-    bool sticks = false;
+struct NoSlipBody {
+    bool coupled = false;
     rigid::Block<D> mass{};               // its own and the added mass
     rigid::Twist<D> velocity{}, drive{};  // at the start of the step; estimate of all other impulses in this step
     std::array<bool, rigid::freedoms<D>> held{};
-    real turning = 0;  // 2 ρν V: see wall_grip.cpp
+    real turning = 0;  // 2 ρν V: see no_slip_walls.cpp
     rigid::Twist<D> impulse{};
 
     rigid::Twist<D> with_mass(const rigid::Twist<D>& v) const {
@@ -64,12 +64,12 @@ struct Rider {
 };
 
 template <int D>
-struct WallGrip {
+struct NoSlipWalls {
     bool holds_closed = false;            // `inside` includes faces closed by bodies, as deep as stress reaches; takes_part is empty
     std::array<Padded<D>, D> takes_part;  // 1 on the faces whose velocity is an unknown of the fluid
     std::vector<WallLink<D>> links;
     std::vector<InsideFace<D>> inside;  // faces that are open to the pressure
-    std::vector<Rider<D>> riders;       // one per body
+    std::vector<NoSlipBody<D>> bodies;  // one per body
 
     static real along(const rigid::Twist<D>& moves, const rigid::Twist<D>& velocity) {
         real v = 0;
@@ -79,7 +79,7 @@ struct WallGrip {
     std::size_t bytes() const {
         std::size_t total = links.capacity() * sizeof(WallLink<D>) + inside.capacity() * sizeof(InsideFace<D>);
         for (const auto& mask : takes_part) total += mask.bytes();
-        return total + riders.capacity() * sizeof(Rider<D>);
+        return total + bodies.capacity() * sizeof(NoSlipBody<D>);
     }
 };
 
@@ -90,6 +90,6 @@ class SolidPlacement;
 
 /// Finds the faces and wall links of no-slip bodies in their present position; bodies are the last entries of the solids.
 template <int D>
-void find_grip(const MacState<D>& s, const SolidPlacement<D>& placement, WallGrip<D>& grip);
+void find_no_slip_walls(const MacState<D>& s, const SolidPlacement<D>& placement, NoSlipWalls<D>& no_slip_walls);
 
 }  // namespace weir::staggered

@@ -6,6 +6,6 @@
 namespace weir::rigid {
 
 template <int D>
-std::vector<Feeler<D>> feelers_of(const scene::Table& shape);
+std::vector<ContactSphere<D>> contact_spheres_of(const scene::Table& shape);
 
 }  // namespace weir::rigid

@@ -19,25 +19,25 @@ bool SurfaceViscosity<D>::step(int a, Index<D>& I, int d, int by) const {
     return I[d] >= 0 && I[d] < mass_[static_cast<std::size_t>(a)].extent()[d];
 }
 
-/// `felt` is known where p_ is 1; the other faces get the mean of their known neighbours, two layers deep.
+/// `with_pressure` is known where p_ is 1; the other faces get the mean of their known neighbours, two layers deep.
 template <int D>
-void SurfaceViscosity<D>::continue_to_surface(Faces& felt) {
+void SurfaceViscosity<D>::continue_to_surface(Faces& with_pressure) {
     constexpr real none = std::numeric_limits<real>::quiet_NaN();
     for (int layer = 0; layer < 2; ++layer) {
         refresh_faces<D>(p_, frame_, 1);
-        refresh_faces<D>(felt, frame_, 1);
+        refresh_faces<D>(with_pressure, frame_, 1);
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
             real sum = 0;
             int count = 0;
             for (int d = 0; d < D && p_[at](I) == 0; ++d)
                 for (const int by : {-1, 1})
-                    if (Index<D> J = I; step(a, J, d, by) && p_[at](J) > 0) sum += felt[at](J), ++count;
+                    if (Index<D> J = I; step(a, J, d, by) && p_[at](J) > 0) sum += with_pressure[at](J), ++count;
             ap_[at](I) = count > 0 ? sum / count : none;
         });
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
-            if (!std::isnan(ap_[at](I))) felt[at](I) = ap_[at](I), p_[at](I) = 1;
+            if (!std::isnan(ap_[at](I))) with_pressure[at](I) = ap_[at](I), p_[at](I) = 1;
         });
     }
 }
@@ -58,37 +58,37 @@ void SurfaceViscosity<D>::foresee(const MacState<D>& state, const LevelSet<D>& s
         const real follows = state.mobility[at].empty() ? 1 : state.mobility[at](I);
         p_[at](I) = cut || (under && over) ? 1 : 0;
         if (cut)
-            felt_[at](I) = follows * (*at_surface)[at](I);
+            with_pressure_[at](I) = follows * (*at_surface)[at](I);
         else if (under && over)
-            felt_[at](I) = follows * (forces[a](I) - dt / state.rho * (state.p(above) - state.p(below)) * frame_.inv_h[a]);
+            with_pressure_[at](I) = follows * (forces[a](I) - dt / state.rho * (state.p(above) - state.p(below)) * frame_.inv_h[a]);
     });
-    if (!bodies_) continue_to_surface(felt_);
+    if (!bodies_) continue_to_surface(with_pressure_);
 }
 
 template <int D>
-void SurfaceViscosity<D>::apply_again(const MacState<D>& state, const Faces& felt, real dt, Faces& u) {
+void SurfaceViscosity<D>::apply_again(const MacState<D>& state, const Faces& with_pressure, real dt, Faces& u) {
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
-        r_[at](I) += mass_[at](I) * (felt[at](I) - felt_[at](I));
-        felt_[at](I) = felt[at](I);
+        r_[at](I) += mass_[at](I) * (with_pressure[at](I) - with_pressure_[at](I));
+        with_pressure_[at](I) = with_pressure[at](I);
     });
     solve(state, dt * state.nu, further * further);
     for_each_unknown([&](int a, const Index<D>& I) { u[static_cast<std::size_t>(a)](I) += x_[static_cast<std::size_t>(a)](I); });
 }
 
 template <int D>
-void SurfaceViscosity<D>::continue_felt(const MacState<D>& state, Faces& felt) {
+void SurfaceViscosity<D>::continue_with_pressure(const MacState<D>& state, Faces& with_pressure) {
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
         const bool known = state.cells(frame_.near(I, a, -1)) == Cell::fluid || state.cells(frame_.near(I, a, 0)) == Cell::fluid;
         p_[at](I) = known ? 1 : 0;
     });
-    continue_to_surface(felt);
+    continue_to_surface(with_pressure);
 }
 
 /// With R = (M + s K)⁻¹ M and 0 ≤ R ≤ 1, ‖(1 − R) e‖² ≤ e·(1 − R) e ≤ min(e·e, s e·K e), in M.
 template <int D>
-real SurfaceViscosity<D>::unseen(const MacState<D>& state, const Faces& felt, real dt, const Faces& forces, real least) {
+real SurfaceViscosity<D>::unseen(const MacState<D>& state, const Faces& with_pressure, real dt, const Faces& forces, real least) {
     const auto square = [&](const Faces& q) {
         for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
@@ -99,7 +99,7 @@ real SurfaceViscosity<D>::unseen(const MacState<D>& state, const Faces& felt, re
     const real size = std::sqrt(square(state.u.face)) + least * std::sqrt(square(forces));
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
-        p_[at](I) = felt[at](I) - felt_[at](I);
+        p_[at](I) = with_pressure[at](I) - with_pressure_[at](I);
     });
     const real all = square(p_);
     refresh_faces<D>(p_, frame_, 1);
@@ -112,7 +112,7 @@ real SurfaceViscosity<D>::unseen(const MacState<D>& state, const Faces& felt, re
     template void SurfaceViscosity<D>::foresee(const MacState<D>&, const LevelSet<D>&, real, const MacVelocity<D>&, const Faces*); \
     template void SurfaceViscosity<D>::continue_to_surface(Faces&);                                                                \
     template void SurfaceViscosity<D>::apply_again(const MacState<D>&, const Faces&, real, Faces&);                                \
-    template void SurfaceViscosity<D>::continue_felt(const MacState<D>&, Faces&);                                                  \
+    template void SurfaceViscosity<D>::continue_with_pressure(const MacState<D>&, Faces&);                                         \
     template real SurfaceViscosity<D>::unseen(const MacState<D>&, const Faces&, real, const Faces&, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -1,4 +1,4 @@
-#include "rigid/feelers.hpp"
+#include "rigid/contact_spheres.hpp"
 
 #include "geometry/mesh/mesh.hpp"
 
@@ -17,7 +17,7 @@ constexpr std::size_t on_mesh = 160;
 constexpr real rounded = 0.02;
 
 template <int D>
-void edges_of_box(Vec<D> min, Vec<D> max, std::vector<Feeler<D>>& list) {
+void edges_of_box(Vec<D> min, Vec<D> max, std::vector<ContactSphere<D>>& list) {
     real r = infinity;
     for (int a = 0; a < D; ++a) r = std::min(r, rounded * (max[a] - min[a]));
     min += Vec<D>::constant(r), max -= Vec<D>::constant(r);
@@ -45,7 +45,7 @@ Vec<3> across(const Vec<3>& u) {
 }
 
 template <int D>
-void rims_of_cylinder(Vec<D> from, Vec<D> to, real radius, std::vector<Feeler<D>>& list) {
+void rims_of_cylinder(Vec<D> from, Vec<D> to, real radius, std::vector<ContactSphere<D>>& list) {
     const Vec<D> u = (to - from) / norm(to - from);
     const real r = rounded * std::min(norm(to - from), 2 * radius);
     from += r * u, to -= r * u, radius -= r;
@@ -67,12 +67,12 @@ void rims_of_cylinder(Vec<D> from, Vec<D> to, real radius, std::vector<Feeler<D>
 
 /// Contact spheres of a mesh: the outermost vertices in 26 directions, on which flat sides rest, then repeatedly the vertex farthest from
 /// all selected ones. Each sphere lies inside as far as the distance there allows.
-std::vector<Feeler<3>> corners_of_mesh(const geometry::Shape<3>& shape) {
+std::vector<ContactSphere<3>> corners_of_mesh(const geometry::Shape<3>& shape) {
     const geometry::PosedMesh& posed = *shape.mesh();
     const auto& points = posed.mesh->triangles().points;
     const Vec<3> size = posed.mesh->max() - posed.mesh->min();
     const real depth = rounded * posed.scale * std::min({size[0], size[1], size[2]});
-    std::vector<Feeler<3>> list;
+    std::vector<ContactSphere<3>> list;
     std::vector<real> away(points.size(), infinity);
     const auto take = [&](std::size_t i) {
         if (away[i] == 0) return;
@@ -99,37 +99,37 @@ std::vector<Feeler<3>> corners_of_mesh(const geometry::Shape<3>& shape) {
 
 /// Keeps the spheres for which f holds.
 template <int D, class F>
-void keep(std::vector<Feeler<D>>& list, F&& f) {
-    list.erase(std::remove_if(list.begin(), list.end(), [&](const Feeler<D>& x) { return !f(x); }), list.end());
+void keep(std::vector<ContactSphere<D>>& list, F&& f) {
+    list.erase(std::remove_if(list.begin(), list.end(), [&](const ContactSphere<D>& x) { return !f(x); }), list.end());
 }
 
 /// Spheres of a union's part inside another part are removed.
 template <int D>
-std::vector<Feeler<D>> of_union(const scene::Table& shape, real rounding) {
+std::vector<ContactSphere<D>> of_union(const scene::Table& shape, real rounding) {
     const auto whole = geometry::make_shape<D>(shape);
-    std::vector<Feeler<D>> list;
+    std::vector<ContactSphere<D>> list;
     for (const auto& part : shape.tables("of"))
-        for (const auto& feeler : feelers_of<D>(part)) list.push_back(feeler);
-    keep<D>(list, [&](const Feeler<D>& f) { return whole->distance(f.at) + f.radius > -rounding; });
+        for (const auto& sphere : contact_spheres_of<D>(part)) list.push_back(sphere);
+    keep<D>(list, [&](const ContactSphere<D>& f) { return whole->distance(f.at) + f.radius > -rounding; });
     return list;
 }
 
 /// A ball with a hole still collides as a ball; corners that were cut away do not.
 template <int D>
-std::vector<Feeler<D>> of_difference(const scene::Table& shape, real rounding) {
-    std::vector<Feeler<D>> list = feelers_of<D>(shape.table("from"));
+std::vector<ContactSphere<D>> of_difference(const scene::Table& shape, real rounding) {
+    std::vector<ContactSphere<D>> list = contact_spheres_of<D>(shape.table("from"));
     if (const std::string& kind = shape.text("from.shape"); kind == "sphere" || kind == "capsule") return list;
     const auto whole = geometry::make_shape<D>(shape);
-    keep<D>(list, [&](const Feeler<D>& f) { return whole->distance(f.at) + f.radius < rounding; });
+    keep<D>(list, [&](const ContactSphere<D>& f) { return whole->distance(f.at) + f.radius < rounding; });
     return list;
 }
 
 }  // namespace
 
 template <int D>
-std::vector<Feeler<D>> feelers_of(const scene::Table& shape) {
+std::vector<ContactSphere<D>> contact_spheres_of(const scene::Table& shape) {
     const std::string& kind = shape.text("shape");
-    std::vector<Feeler<D>> list;
+    std::vector<ContactSphere<D>> list;
     if (kind == "box") edges_of_box<D>(shape.vec<D>("min"), shape.vec<D>("max"), list);
     if (kind == "sphere") list.push_back({shape.vec<D>("centre"), shape.number("radius")});
     if (kind == "cylinder") rims_of_cylinder<D>(shape.vec<D>("from"), shape.vec<D>("to"), shape.number("radius"), list);
@@ -145,7 +145,7 @@ std::vector<Feeler<D>> feelers_of(const scene::Table& shape) {
     return kind == "union" ? of_union<D>(shape, rounding) : of_difference<D>(shape, rounding);
 }
 
-template std::vector<Feeler<2>> feelers_of<2>(const scene::Table&);
-template std::vector<Feeler<3>> feelers_of<3>(const scene::Table&);
+template std::vector<ContactSphere<2>> contact_spheres_of<2>(const scene::Table&);
+template std::vector<ContactSphere<3>> contact_spheres_of<3>(const scene::Table&);
 
 }  // namespace weir::rigid

@@ -1,4 +1,4 @@
-#include "staggered/wall_grip.hpp"
+#include "staggered/no_slip_walls.hpp"
 
 #include "staggered/solid_faces.hpp"
 
@@ -12,8 +12,8 @@ namespace {
 template <int D>
 class Finder {
 public:
-    Finder(const MacState<D>& s, const geometry::Solids<D>& solids, WallGrip<D>& grip, std::size_t body)
-        : s_(s), solids_(solids), grip_(grip), body_(body), own_(solids.count() - grip.riders.size() + body) {}
+    Finder(const MacState<D>& s, const geometry::Solids<D>& solids, NoSlipWalls<D>& no_slip_walls, std::size_t body)
+        : s_(s), solids_(solids), no_slip_walls_(no_slip_walls), body_(body), own_(solids.count() - no_slip_walls.bodies.size() + body) {}
 
     void find() {
         const geometry::Ball<D>& ball = solids_.ball(own_);
@@ -38,7 +38,7 @@ private:
 
     void look(int a, const Index<D>& I) {
         const bool shut = !open(a, I);
-        if (shut && !grip_.holds_closed) return;
+        if (shut && !no_slip_walls_.holds_closed) return;
         const real away = distance(a, I);
         if (shut || away <= 0) return hold(a, I, away);
         for (int b = 0; b < D; ++b) {
@@ -51,11 +51,11 @@ private:
     /// Stores a face inside a body. With holds_closed each closed face belongs to one body; faces that stress does not reach are left out.
     /// It acts on the edges of cells that are not closed, at most two cell diagonals deep in a body.
     void hold(int a, const Index<D>& I, real away) {
-        if (!grip_.holds_closed)
-            grip_.takes_part[static_cast<std::size_t>(a)](I) = 0;
+        if (!no_slip_walls_.holds_closed)
+            no_slip_walls_.takes_part[static_cast<std::size_t>(a)](I) = 0;
         else if (away < -3 * norm(s_.u.h) || !its_own(a, I))
             return;
-        grip_.inside.push_back({a, I, body_, moves_at<D>(a, s_.u.face_centre(a, I) - at_)});
+        no_slip_walls_.inside.push_back({a, I, body_, moves_at<D>(a, s_.u.face_centre(a, I) - at_)});
     }
 
     void link(int a, int b, const Index<D>& I, const Index<D>& N, real away) {
@@ -64,12 +64,12 @@ private:
         if (deep > 0 && (open(a, N) || !its_own(a, N))) return;
         const real theta = deep < 0 ? std::max(away / (away - deep), least_open_fraction) : 1;
         const Vec<D> x = s_.u.face_centre(a, I), wall = x + theta * (s_.u.face_centre(a, N) - x);
-        grip_.links.push_back({a, b, I, N, body_, 1 / theta, moves_at<D>(a, wall - at_), moves_at<D>(a, x - at_)});
+        no_slip_walls_.links.push_back({a, b, I, N, body_, 1 / theta, moves_at<D>(a, wall - at_), moves_at<D>(a, x - at_)});
     }
 
     const MacState<D>& s_;
     const geometry::Solids<D>& solids_;
-    WallGrip<D>& grip_;
+    NoSlipWalls<D>& no_slip_walls_;
     std::size_t body_, own_;
     Vec<D> at_{};
 };
@@ -77,19 +77,19 @@ private:
 }  // namespace
 
 template <int D>
-void find_grip(const MacState<D>& s, const SolidPlacement<D>& placement, WallGrip<D>& grip) {
-    for (int a = 0; a < D && !grip.holds_closed; ++a) {
-        auto& mask = grip.takes_part[static_cast<std::size_t>(a)];
+void find_no_slip_walls(const MacState<D>& s, const SolidPlacement<D>& placement, NoSlipWalls<D>& no_slip_walls) {
+    for (int a = 0; a < D && !no_slip_walls.holds_closed; ++a) {
+        auto& mask = no_slip_walls.takes_part[static_cast<std::size_t>(a)];
         const auto& open = s.solid.open[static_cast<std::size_t>(a)];
         if (mask.empty()) mask = Padded<D>(open.extent());
         for_each_cell(open.extent(), [&](const Index<D>& I) { mask(I) = open(I) > 0 ? 1 : 0; });
     }
-    grip.links.clear(), grip.inside.clear();
-    for (std::size_t b = 0; b < grip.riders.size(); ++b)
-        if (grip.riders[b].sticks) Finder<D>(s, placement.solids(), grip, b).find();
+    no_slip_walls.links.clear(), no_slip_walls.inside.clear();
+    for (std::size_t b = 0; b < no_slip_walls.bodies.size(); ++b)
+        if (no_slip_walls.bodies[b].coupled) Finder<D>(s, placement.solids(), no_slip_walls, b).find();
 }
 
-template void find_grip(const MacState<2>&, const SolidPlacement<2>&, WallGrip<2>&);
-template void find_grip(const MacState<3>&, const SolidPlacement<3>&, WallGrip<3>&);
+template void find_no_slip_walls(const MacState<2>&, const SolidPlacement<2>&, NoSlipWalls<2>&);
+template void find_no_slip_walls(const MacState<3>&, const SolidPlacement<3>&, NoSlipWalls<3>&);
 
 }  // namespace weir::staggered
