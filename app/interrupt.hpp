@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM are counted, not obeyed at once: the run ends where nothing is lost.
+// Ctrl-C and SIGTERM are counted, not handled at once: the run ends where nothing is lost.
 #pragma once
 
 namespace weir::app {

@@ -1,8 +1,8 @@
 // The interface of every solver for the time loop, output and validation: steps, views of fields, integrals, checkpoints.
 #pragma once
+#include "core/brush.hpp"
 #include "core/checkpoint.hpp"
 #include "core/effects.hpp"
-#include "core/hand.hpp"
 #include "core/passes.hpp"
 #include "core/types.hpp"
 
@@ -151,7 +151,7 @@ public:
     virtual bool checks_itself() const { return false; }
     virtual std::vector<Integral> integrals() const = 0;
     /// Interactive forcing, where the scene names it and the solver supports it (effects.hand).
-    virtual Hand* hand() const { return nullptr; }
+    virtual BrushForcing* brush() const { return nullptr; }
     /// The fields that may be written; none where the shown fields are not the solver's state.
     virtual std::vector<EditableField> editable() { return {}; }
     /// Called after such a field was written. Restores the invariants of a step: a divergence-free velocity that satisfies the boundary

@@ -32,7 +32,7 @@ public:
     /// Computes enthalpies from the initial temperatures; rejects values below 0 K and above boiling.
     void start(MacState<D>& s, const scene::Scene& scene);
     /// Adds interactive heating.
-    void follow(std::shared_ptr<Hand> hand, MacState<D>& s) { supply_.follow(std::move(hand), melting_, s["enthalpy"]); }
+    void follow(std::shared_ptr<BrushForcing> forcing, MacState<D>& s) { supply_.follow(std::move(forcing), melting_, s["enthalpy"]); }
     /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it (conduction.hpp).
     void conduct(MacState<D>& s, real dt);
     /// u += dt g ∫β dT along y, β the substance's thermal expansion, from its melting point (Boussinesq); no force in ice.

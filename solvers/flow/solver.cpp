@@ -3,7 +3,7 @@
 #include "core/cut_by_work.hpp"
 #include "core/error.hpp"
 #include "flow/emitters.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "scene/names.hpp"
 #include "staggered/closed_volume.hpp"
 #include "staggered/diagnostics.hpp"
@@ -176,8 +176,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       side_rate_(fastest_side(state_)),
       wants_vorticity_(lists(scene, "vorticity")),
       wants_divergence_(lists(scene, "divergence")),
-      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
-    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::implicit));
+      brush_forcing_(geometry::make_brush(scene, kinds_of_brush(scene))) {
+    if (brush_forcing_) effects_.add("hand", brush_effect<D>(brush_forcing_, Stage::implicit));
     if (max_over(state_.extent(), [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::fluid ? 1.0 : 0.0; }) == 0)
         scene.refuse("solids", "solids cover all cells of the domain");
     if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_));
@@ -193,7 +193,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     if (heat_) {
         if (solids_.moving()) scene.refuse("solids", "moving solids cannot be combined with a melting substance");
         heat_->start(state_, scene);
-        if (hand_) heat_->follow(hand_, state_);
+        if (brush_forcing_) heat_->follow(brush_forcing_, state_);
     }
     if (bodies_) {
         if (options_.scheme == Scheme::conservative)
@@ -202,8 +202,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         bodies_->start(state_, solids_);
         const auto& all = bodies_->bodies().all();
         if (scene.effect("viscosity") && std::any_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; }))
-            bodies_->stick(state_, false);
-        if (hand_) bodies_->follow(hand_, scene);
+            bodies_->couple_friction(state_, false);
+        if (brush_forcing_) bodies_->follow(brush_forcing_, scene);
     }
     for (auto& field : state_.fields) {
         if (field.derived) continue;
@@ -406,7 +406,7 @@ void FlowSolver<D>::meet_walls(real now, real last) {
 /// Friction force on no-slip solids. In parallel, the stress at a subdomain boundary needs the values of both sides.
 template <int D>
 Vec<D> FlowSolver<D>::friction() {
-    if (!walls_ || !walls_->stick() || state_.nu == 0) return {};
+    if (!walls_ || !walls_->no_slip() || state_.nu == 0) return {};
     for (int a = 0; a + 1 < D; ++a) refresh(state_.u[a], state_.sides.periodic(D - 1));
     return walls_->friction(state_).force;
 }
@@ -606,7 +606,7 @@ std::vector<Integral> FlowSolver<D>::integrals() const {
     auto list = flow::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
-    if (hand_) geometry::sum_up(*hand_, D, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (!solids_.any()) return list;
     if (bodies_)
         for (auto& integral : bodies_->bodies().integrals(bodies_->gravity())) list.push_back(std::move(integral));
@@ -651,7 +651,7 @@ void FlowSolver<D>::save(Checkpoint& to) const {
     if (bodies_) bodies_->save(to);
     to.put_value("impulse", impulse_);
     if (heat_) heat_->save(to);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     to.put_value("smoke_in_solids", std::array<real, 2>{smoke_removed_, smoke_continued_});
 }
 
@@ -663,7 +663,7 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     }
     if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !held_.alone();
     make_whole();
     if (walls_) walls_->forget();

@@ -44,7 +44,7 @@ public:
     bool holds_own_planes() const override { return held_.alone(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     std::vector<EditableField> editable() override;
     void edited(const EditableField& field) override;
     void save(Checkpoint& to) const override;
@@ -124,7 +124,7 @@ private:
     bool wants_vorticity_ = false, wants_divergence_ = false;
     mutable std::vector<Grid<real, D>> vorticity_;  // computed on request
     mutable Grid<real, D> divergence_;
-    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
     std::vector<WithBoundary<D>> remembered_fields_, remembered_;  // uⁿ, qⁿ and both
     std::vector<WithBoundary<D>> carried_velocity_;

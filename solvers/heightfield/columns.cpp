@@ -46,7 +46,7 @@ Columns::Columns(const scene::Scene& scene)
       periodic_z_(state_.sides(1, 0).kind == SideKind::periodic),
       sweep_(state_.plane, periodic_x_, periodic_z_),
       floats_(make_floats(scene, state_.plane), state_.plane, state_.bed, state_.h, state_.g, state_.rho, periodic_x_, periodic_z_),
-      hand_(geometry::make_hand(scene, {HandKind::pour, HandKind::drain})),
+      brush_forcing_(geometry::make_brush(scene, {BrushKind::pour, BrushKind::drain})),
       depth_(state_.plane.extent()),
       nothing_(state_.plane.extent()),
       cfl_(scene.number("time.cfl")) {
@@ -73,7 +73,7 @@ Columns::Columns(const scene::Scene& scene)
         }
     }
     if (scene.effect("gravity")) plans_.push_back({.name = "gravity", .inside = "move columns"});
-    if (hand_) plans_.push_back({.name = "hand", .pass = effect_pass("hand")});
+    if (brush_forcing_) plans_.push_back({.name = "hand", .pass = effect_pass("hand")});
     if (const auto* t = scene.effect("damping")) {
         damping_ = t->number("rate");
         plans_.push_back({.name = "damping", .pass = effect_pass("damping")});
@@ -119,9 +119,9 @@ StepReport Columns::step(real dt) {
     const OwnPlanes mine = held_.own();
     brought_ = held_.cut().empty();
     refresh(surface_, periodic_z_);
-    if (hand_) {
+    if (brush_forcing_) {
         const auto timed = passes_.time("effect hand");
-        pour_and_drain(*hand_, state_, surface_, dt, [&](std::size_t c) { return floats_.covers(c); });
+        apply_sources_and_sinks(*brush_forcing_, state_, surface_, dt, [&](std::size_t c) { return floats_.covers(c); });
     }
     if (!floats_.empty()) {
         const auto timed = passes_.time("place floats");
@@ -268,7 +268,7 @@ std::vector<Integral> Columns::integrals() const {
                                   {"poured_volume", volume_unit, state_.poured},
                                   {"volume_balance", volume_unit, volume - state_.poured},
                                   {"potential_energy", "J" + per_depth, 0.5 * state_.rho * state_.g * raised}};
-    if (hand_) geometry::sum_up(*hand_, state_.plane.dim, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, state_.plane.dim, list);
     for (std::size_t b = 0; b < floats_.count(); ++b) {
         const std::string name = fmt::format("float{}_", b);
         const Pushed& p = floats_.pushed(b);
@@ -313,7 +313,7 @@ void Columns::save(Checkpoint& to) const {
     to.put_value("poured", state_.poured);
     to.put_value("through", through_);
     to.put_value("steps", steps_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     if (!floats_.empty()) floats_.save(to);
 }
 
@@ -327,7 +327,7 @@ void Columns::restore(const Checkpoint& from) {
     state_.poured = from.get_value<real>("poured");
     through_ = from.get_value<real>("through");
     steps_ = from.get_value<std::int64_t>("steps");
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
     brought_ = !held_.alone();
 }

@@ -1,8 +1,8 @@
 // Columns of water as in real-time graphics (sweep.hpp), with floating or dragged objects (floats.hpp).
 #pragma once
+#include "heightfield/brush.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/floats.hpp"
-#include "heightfield/hand.hpp"
 #include "heightfield/sweep.hpp"
 
 namespace weir::heightfield {
@@ -19,7 +19,7 @@ public:
     bool holds_own_planes() const override { return held_.alone(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     real time() const override { return state_.time; }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
@@ -48,7 +48,7 @@ private:
     Sweep sweep_;
     Floats floats_;
     std::vector<EffectPlan> plans_;
-    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     mutable Field depth_, displaced_;
     Field nothing_;
     std::array<std::vector<real>, 4> taken_;  // absorbed by open sides, per adjacent column: x_min, x_max, z_min, z_max

@@ -1,7 +1,7 @@
 #include "heightfield/effects.hpp"
 
 #include "core/grid.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "scene/gravity.hpp"
 
 #include <algorithm>
@@ -147,7 +147,7 @@ std::vector<scene::Variant> effect_schemas() {
           {.name = "start", .type = Type::number, .doc = "Start time.", .unit = "s", .fallback = 0.0, .min = 0},
           {.name = "end", .type = Type::number, .doc = "End time.", .unit = "s", .min = 0}},
          {"rate"}},
-        geometry::hand_schema()};
+        geometry::brush_schema()};
 }
 
 Effects<State> make_effects(const scene::Scene& scene, const State& state, const char* moved_in) {

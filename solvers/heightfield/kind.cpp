@@ -153,7 +153,7 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
 /// Rejects keys of a scene that are not supported in parallel.
 void over_ranks(const scene::Scene& scene) {
     if (scene.dim() == 3 && !scene.root().tables("floats").empty()) scene::one_process_only(scene, "floats", "floating objects are");
-    scene::refuse_hand(scene);
+    scene::refuse_brush(scene);
 }
 
 /// Messages of a step in parallel: ghost rows before each stage, and reductions over rows.

@@ -27,9 +27,9 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
       nothing_(state_.h.extent()),
       raised_(make_raised_bed(scene, state_.plane)),
       effects_(make_effects(scene, state_, "move water")),
-      hand_(geometry::make_hand(scene, geometry::moving_kinds)),
+      brush_forcing_(geometry::make_brush(scene, geometry::moving_kinds)),
       cfl_(scene.number("time.cfl")) {
-    if (hand_) effects_.add("hand", hand_effect(hand_));
+    if (brush_forcing_) effects_.add("hand", brush_effect(brush_forcing_));
     if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column per step: the depth may become negative", "cfl is at most 0.5");
     if (raised_ && raised_->moves())
         terrain_ = make_terrain(scene, state_.plane);
@@ -170,7 +170,7 @@ std::vector<Integral> ShallowWater::integrals() const {
     if (!qz.empty()) list.push_back({"momentum_z", "kg m/s", state_.rho * sum([&](std::size_t c) { return qz[c]; })});
     list.push_back({"wet_area", flat ? "m" : "m^2", sum([&](std::size_t c) { return h[c] > state_.dry ? 1.0 : 0.0; })});
     list.push_back({"raised_depth", "m", clipped_});
-    if (hand_) geometry::sum_up(*hand_, plane.dim, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, plane.dim, list);
     return list;
 }
 
@@ -209,7 +209,7 @@ void ShallowWater::save(Checkpoint& to) const {
     to.put_value("volume", volume_);
     to.put_value("rate", rate_);
     to.put_value("clipped", clipped_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
 }
 
 void ShallowWater::restore(const Checkpoint& from) {
@@ -224,7 +224,7 @@ void ShallowWater::restore(const Checkpoint& from) {
     volume_ = from.get_value<real>("volume");
     rate_ = from.get_value<real>("rate");
     clipped_ = from.get_value<real>("clipped");
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     brought_ = !held_.alone();
 }
 

@@ -1,7 +1,7 @@
 // The shallow-water equations on a plane of columns: second order in space and time, well balanced, no negative depth.
 #pragma once
+#include "heightfield/brush.hpp"
 #include "heightfield/effects.hpp"
-#include "heightfield/hand.hpp"
 #include "heightfield/rows.hpp"
 #include "heightfield/start.hpp"
 
@@ -17,7 +17,7 @@ public:
     bool holds_own_planes() const override { return held_.alone(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     real time() const override { return state_.time; }
     std::vector<EditableField> editable() override;
     void edited(const EditableField& field) override;
@@ -44,8 +44,8 @@ private:
     Field terrain_, nothing_;       // the bed without solids, where these move; the vertical velocity
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
-    std::shared_ptr<Hand> hand_;   // nullptr where the scene has none
-    mutable bool brought_ = true;  // whether ghost rows, or all rows, are up to date
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
+    mutable bool brought_ = true;                  // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

@@ -1,7 +1,7 @@
 #include "particles/solver.hpp"
 
 #include "core/error.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 
 #include <algorithm>
 
@@ -39,7 +39,7 @@ std::vector<Integral> ParticleSolver<D>::integrals() const {
     const auto neighbours = neighbour_counts();
     list.push_back({"mean_neighbours", "1", neighbours.mean});
     list.push_back({"max_neighbours", "1", neighbours.most});
-    if (const Hand* hand = this->hand()) geometry::sum_up(*hand, D, list);
+    if (const BrushForcing* forcing = this->brush()) geometry::sum_up(*forcing, D, list);
     if (heat_) heat_->place(state());
     sum_up(list);
     if (heat_) heat_->sum_up(state(), list);
@@ -100,14 +100,14 @@ template <int D>
 void HostSolver<D>::save_state(Checkpoint& to) const {
     fluid_.save(to);
     emitters_.save(to);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     to.put_value(std::string(this->method()) + ".speed", speed_);
 }
 template <int D>
 void HostSolver<D>::restore_state(const Checkpoint& from) {
     fluid_.restore(from);
     emitters_.restore(from);
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     if (this->bodies_) this->bodies_->restore(from, fluid_.domain);
     const std::string key = std::string(this->method()) + ".speed";
     speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // devices do not store it

@@ -97,7 +97,7 @@ public:
     Fluid<D>& fluid() { return fluid_; }
     std::unique_ptr<Solver::Brought> show_in_parts() const final;
     bool checks_itself() const final { return fluid_.shared; }
-    Hand* hand() const final { return hand_.get(); }
+    BrushForcing* brush() const final { return brush_forcing_.get(); }
 
 protected:
     explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) { this->bodies_ = BodiesInLiquid<D>::make(fluid_); }
@@ -134,8 +134,8 @@ protected:
 
     Fluid<D> fluid_;
     Emitters<D> emitters_;
-    std::shared_ptr<Hand> hand_;   // nullptr where the scene has none
-    real speed_ = not_applicable;  // maximum of particles and bodies after the last step; unknown before the first [m/s]
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
+    real speed_ = not_applicable;                  // maximum of particles and bodies after the last step; unknown before the first [m/s]
 
 private:
     class Brought;

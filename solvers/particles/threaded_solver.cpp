@@ -24,12 +24,12 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
     this->take_heat(scene);
-    this->hand_ = geometry::make_hand(scene, geometry::kinds_of_hand(this->heat_ != nullptr, this->bodies_ != nullptr));
-    if (!this->hand_) return;
-    if (this->bodies_) this->bodies_->follow(this->hand_, scene);
-    auto hand = std::make_unique<HandOnParticles<D>>(this->hand_);
-    sources_ = hand.get();
-    effects_.add("hand", std::move(hand));
+    this->brush_forcing_ = geometry::make_brush(scene, geometry::kinds_of_brush(this->heat_ != nullptr, this->bodies_ != nullptr));
+    if (!this->brush_forcing_) return;
+    if (this->bodies_) this->bodies_->follow(this->brush_forcing_, scene);
+    auto forcing = std::make_unique<BrushOnParticles<D>>(this->brush_forcing_);
+    sources_ = forcing.get();
+    effects_.add("hand", std::move(forcing));
 }
 
 template <int D>

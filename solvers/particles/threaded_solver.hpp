@@ -2,8 +2,8 @@
 // the effects of every method (flow.hpp).
 #pragma once
 #include "core/effects.hpp"
+#include "particles/brush.hpp"
 #include "particles/flow.hpp"
-#include "particles/hand.hpp"
 #include "particles/pairs.hpp"
 #include "particles/scheme.hpp"
 #include "particles/solid_terms.hpp"
@@ -26,10 +26,10 @@ protected:
     /// Bytes of the method's own arrays.
     virtual std::size_t own_bytes() const = 0;
     /// Emitters, sinks and interactive forcing, before a step.
-    void pour_and_drain(real dt) {
+    void apply_sources_and_sinks(real dt) {
         this->forget_whole();
         this->emitters_.apply(fluid_, dt);
-        if (sources_) sources_->pour_and_drain(fluid_);
+        if (sources_) sources_->apply_sources_and_sinks(fluid_);
         clamps_before_ = fluid_.clamps;  // emitters are replicated on all ranks
     }
     /// Finds the pairs at these positions, closer than the radius [m]. In parallel particles migrate first, and until drop_ghosts() the
@@ -68,7 +68,7 @@ protected:
     SolidTerms<D> solids_;
     Flow<D> flow_;
     Effects<Flow<D>> effects_;
-    HandOnParticles<D>* sources_ = nullptr;  // one of the effects
+    BrushOnParticles<D>* sources_ = nullptr;  // one of the effects
 
 private:
     void load_theta();

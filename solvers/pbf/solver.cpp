@@ -22,7 +22,7 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene) : Base(Options(scene), scene,
 /// The numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport PbfSolver<D>::step(real dt) {
-    this->pour_and_drain(dt);
+    this->apply_sources_and_sinks(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
     this->stop_frozen();  // frozen particles
     if (bodies_) start_bodies(dt);

@@ -211,7 +211,7 @@ void Simulation::steer(const scene::Override& change) {
 
 /// Replaces the solver by one that has the same state.
 void Simulation::replace(std::unique_ptr<Solver> solver) {
-    if (const Hand* hand = solver_->hand()) solver->hand()->keys = hand->keys;
+    if (const BrushForcing* forcing = solver_->brush()) solver->brush()->keys = forcing->keys;
     solver->passes().reset();
     for (const Pass& pass : static_cast<const Solver&>(*solver_).passes().list()) solver->passes().add(pass.name, pass.seconds, pass.calls);
     solver_ = std::move(solver);

@@ -46,7 +46,7 @@ SphSolver<D>::SphSolver(const Options& options, const scene::Scene& scene, Fluid
 /// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
 template <int D>
 StepReport SphSolver<D>::step(real dt) {
-    this->pour_and_drain(dt);
+    this->apply_sources_and_sinks(dt);
     find_neighbours();
     if (!options_.continuity) find_densities();        // eq. 3
     find_pressures();                                  // eq. 12

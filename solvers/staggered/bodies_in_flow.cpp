@@ -88,7 +88,7 @@ void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solid
 }
 
 template <int D>
-void BodiesInFlow<D>::stick(MacState<D>& s, bool holds_closed) {
+void BodiesInFlow<D>::couple_friction(MacState<D>& s, bool holds_closed) {
     no_slip_walls_ = std::make_unique<NoSlipWalls<D>>();
     no_slip_walls_->holds_closed = holds_closed;
     no_slip_walls_->bodies.resize(bodies_.count());
@@ -438,15 +438,15 @@ void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
             if (no_slip_walls_) heavy_[at] += no_slip_walls_->bodies[i].impulse[k];
         }
     }
-    if (hand_) be_held(s, dt);
+    if (brush_forcing_) be_held(s, dt);
     added_.begin(masses_, free_, mobility_);
 }
 
 template <int D>
-void BodiesInFlow<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& scene) {
-    hand_ = std::move(hand);
-    for (std::size_t i = 0; i < hand_->keys.size(); ++i)
-        if (hand_->keys[i].kind == HandKind::grab && hand_->keys[i].body >= static_cast<int>(bodies_.count()))
+void BodiesInFlow<D>::follow(std::shared_ptr<BrushForcing> forcing, const scene::Scene& scene) {
+    brush_forcing_ = std::move(forcing);
+    for (std::size_t i = 0; i < brush_forcing_->keys.size(); ++i)
+        if (brush_forcing_->keys[i].kind == BrushKind::grab && brush_forcing_->keys[i].body >= static_cast<int>(bodies_.count()))
             scene.refuse("effects.hand.keyframes[" + std::to_string(i) + "].body", "there is no such body",
                          "numbers of the list bodies, from 0 to " + std::to_string(bodies_.count() - 1));
 }
@@ -455,26 +455,26 @@ void BodiesInFlow<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& sce
 /// step. The factor of v is added to the mass.
 template <int D>
 void BodiesInFlow<D>::be_held(const MacState<D>& s, real dt) {
-    const auto brush = hand_->at<D>(s.time);
-    hold_.body = brush.kind == HandKind::grab ? brush.body : -1;
-    if (hold_.body < 0) return;
-    const auto b = static_cast<std::size_t>(hold_.body);
+    const auto brush = brush_forcing_->at<D>(s.time);
+    grab_.body = brush.kind == BrushKind::grab ? brush.body : -1;
+    if (grab_.body < 0) return;
+    const auto b = static_cast<std::size_t>(grab_.body);
     const Body<D>& body = bodies_[b];
-    hold_.weight = dt * hand_->rate * (body.mass + body.wet * rho_ * body.moments.volume);
-    hold_.target = 0.25 * hand_->rate * (brush.centre - body.at);
+    grab_.weight = dt * brush_forcing_->rate * (body.mass + body.wet * rho_ * body.moments.volume);
+    grab_.target = 0.25 * brush_forcing_->rate * (brush.centre - body.at);
     for (std::size_t a = 0; a < D; ++a) {
-        real& target = hold_.target[static_cast<int>(a)];
+        real& target = grab_.target[static_cast<int>(a)];
         target = std::clamp(target, -h_[static_cast<int>(a)] / dt, h_[static_cast<int>(a)] / dt);
-        masses_[b][a][a] += hold_.weight;
-        heavy_[b * n + a] += hold_.weight * (target - before_[b * n + a]);
+        masses_[b][a][a] += grab_.weight;
+        heavy_[b * n + a] += grab_.weight * (target - before_[b * n + a]);
     }
 }
 
 template <int D>
-void BodiesInFlow<D>::tell_hand() {
-    for (int a = 0; a < D && hold_.body >= 0; ++a)
-        if (const std::size_t i = static_cast<std::size_t>(hold_.body) * n + static_cast<std::size_t>(a); free_[i])
-            hand_->impulse[a] += hold_.weight * (hold_.target[a] - velocity_[i]);
+void BodiesInFlow<D>::record_brush_impulse() {
+    for (int a = 0; a < D && grab_.body >= 0; ++a)
+        if (const std::size_t i = static_cast<std::size_t>(grab_.body) * n + static_cast<std::size_t>(a); free_[i])
+            brush_forcing_->impulse[a] += grab_.weight * (grab_.target[a] - velocity_[i]);
 }
 
 /// The impulses of the pressure in a time dt.
@@ -693,7 +693,7 @@ void BodiesInFlow<D>::take_velocities(MacState<D>& s, SolidPlacement<D>& placeme
             body.force[k] += body.viscous[k];
         }
     }
-    if (hand_) tell_hand();
+    if (brush_forcing_) record_brush_impulse();
     bodies_.place(placement.solids());
     set_velocities(s);
 }

@@ -11,7 +11,7 @@
 // velocities, so all iterations together cost little more than one solve. In a cut cell the pressure is known at the cell's centre only; F
 // extrapolates it to the wall by the hydrostatic gradient, so a flat bottom also floats between cell layers.
 #pragma once
-#include "core/hand.hpp"
+#include "core/brush.hpp"
 #include "poisson/poisson.hpp"
 #include "rigid/added_mass.hpp"
 #include "rigid/bodies.hpp"
@@ -38,11 +38,11 @@ public:
 
     const rigid::Bodies<D>& bodies() const { return bodies_; }
     /// Enables interactive forcing of the bodies; rejects keyframes with a body index out of range.
-    void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
+    void follow(std::shared_ptr<BrushForcing> forcing, const scene::Scene& scene);
     /// Initializes the wet parts of the bodies at t = 0.
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
     /// Makes the bodies with no slip couple to viscosity; `holds_closed`: see NoSlipWalls.
-    void stick(MacState<D>& s, bool holds_closed);
+    void couple_friction(MacState<D>& s, bool holds_closed);
     /// Before advance_free(): fills the cells and faces that bodies are leaving with the velocity of the neighbouring fluid, after free
     /// fall for a time dt.
     void leave(MacState<D>& s, real dt) const;
@@ -98,7 +98,7 @@ private:
     rigid::Block<D> mass_of_wet_surface(const MacState<D>& s, std::size_t body) const;
     void begin(const MacState<D>& s, bool wet, real dt);
     void be_held(const MacState<D>& s, real dt);
-    void tell_hand();
+    void record_brush_impulse();
     void measure_added_mass(const MacState<D>& s, poisson::Solver<D>& solver);
     void pushed(const MacState<D>& s, std::vector<real>& impulse, real dt) const;
     void learn();
@@ -145,14 +145,14 @@ private:
     std::vector<char> joined_;              // per body: whether it is part of the pressure matrix
     std::vector<rigid::Block<D>> inverse_;  // inverse masses of those
     poisson::LowRank matrix_;
-    real b_squared_ = 0, whole_ = 0;  // ‖b‖² now; ‖b‖ with the extrapolated velocities
-    std::shared_ptr<Hand> hand_;      // nullptr: no interactive forcing
+    real b_squared_ = 0, whole_ = 0;               // ‖b‖² now; ‖b‖ with the extrapolated velocities
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr: no interactive forcing
     /// The body that is grabbed in this step: the impulse is weight (target − V).
     struct Hold {
         int body = -1;
         real weight = 0;
         Vec<D> target{};
-    } hold_;
+    } grab_;
     poisson::Report report_;
     int coupling_iterations_ = 0;
 };

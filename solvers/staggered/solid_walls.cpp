@@ -70,9 +70,9 @@ void SolidWalls<D>::find(const MacState<D>& s, const SolidPlacement<D>& placemen
     const real largest = *std::max_element(s.u.h.begin(), s.u.h.end());
     // bound on the displacement since the placement, unless a solid starts from rest faster than the fluid beside it
     const real margin = now > last ? (0.05 + 1.2 * (now - last) * placement.max_rate(s)) * largest : 0;
-    stick_ = false;  // the same on all ranks, including those without walls
+    no_slip_ = false;  // the same on all ranks, including those without walls
     for (std::size_t k = 0; k < placement.solids().count(); ++k)
-        stick_ = stick_ || (placement.solids()[k].no_slip && !placement.solids()[k].free);
+        no_slip_ = no_slip_ || (placement.solids()[k].no_slip && !placement.solids()[k].free);
     last_.resize(placement.solids().count());
     for (std::size_t k = 0; k < last_.size(); ++k)
         if (placement.solids()[k].motion.moves()) last_[k] = placement.solids()[k].motion.pose(last);

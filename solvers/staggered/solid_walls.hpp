@@ -56,7 +56,7 @@ public:
     bool found() const;
     void forget() { any_ = false; }
     /// Returns whether any solid is no-slip.
-    bool stick() const { return stick_; }
+    bool no_slip() const { return no_slip_; }
 
     /// 1 on faces whose velocity is changed by viscosity, 0 elsewhere; with ghosts.
     const Padded<D>& takes_part(int a) const { return takes_part_[static_cast<std::size_t>(a)]; }
@@ -80,7 +80,7 @@ private:
     std::array<std::vector<SolidWall<D>>, D> walls_;
     std::array<std::vector<HeldFace<D>>, D> held_;
     std::vector<geometry::Pose<D>> last_;  // of each moving solid
-    bool stick_ = false, any_ = false;
+    bool no_slip_ = false, any_ = false;
     int begin_ = 0, end_ = 0;  // the range of planes that were searched
 };
 

@@ -1,7 +1,7 @@
 #include "tallcell/kind.hpp"
 
 #include "core/traffic.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
@@ -73,7 +73,7 @@ Key scheme_keys() {
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
-void over_ranks(const scene::Scene& scene) { scene::refuse_hand(scene); }
+void over_ranks(const scene::Scene& scene) { scene::refuse_brush(scene); }
 
 }  // namespace
 
@@ -89,7 +89,7 @@ scene::SolverKind kind() {
                    scene::surface_key_of_level_set(false)};
     schema.effects = schemas_of(body_forces());
     schema.effects.push_back(surface::volume_control());
-    schema.effects.push_back(geometry::hand_schema());
+    schema.effects.push_back(geometry::brush_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
     scene::SolverKind tall{
         schema,

@@ -1,5 +1,5 @@
 // Output and steering of liquid on tall cells: fields, integrals, checkpoints, an edited velocity.
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
 #include "tallcell/solver.hpp"
@@ -31,7 +31,7 @@ std::vector<Integral> TallCells<D>::integrals() const {
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
     list[0].value = volume_.volume();
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});
-    if (hand_) geometry::sum_up(*hand_, D, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     return list;
 }
@@ -53,7 +53,7 @@ void TallCells<D>::save(Checkpoint& to) const {
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
     to.put_value("tallcell.reals", reals);
     to.put_value("tallcell.steps", steps_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
 }
 
 template <int D>
@@ -71,7 +71,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
         volume_.start(surface_, state_);  // files of older versions have no such block
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     remesh();
     mark_liquid_faces();
     whole_ = !held_.alone();

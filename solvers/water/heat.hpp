@@ -37,7 +37,7 @@ public:
     /// Records the volume that has actually left the liquid, whose volume was `volume` before.
     void leaves(const MacState<D>& s, real lost, real volume);
     /// Adds interactive heating.
-    void follow(std::shared_ptr<Hand> hand) { supply_.follow(std::move(hand), melting_, enthalpy_); }
+    void follow(std::shared_ptr<BrushForcing> forcing) { supply_.follow(std::move(forcing), melting_, enthalpy_); }
     /// ρ dH/dt = ∇·(k ∇T) + q in the liquid of s.cells, with this volume and surface area.
     void conduct(const MacState<D>& s, real volume, real area, real dt);
     /// Multiplies u* by β and sets s.mobility to β. Returns whether any face has drag.

@@ -64,7 +64,7 @@ Key scheme_keys() {
 void over_ranks(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting and boiling of a substance are");
-    scene::refuse_hand(scene);
+    scene::refuse_brush(scene);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Output of the liquid: fields, integrals, checkpoints.
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
 #include "water/solver.hpp"
@@ -54,7 +54,7 @@ std::vector<Integral> Water<D>::integrals() const {
     list.insert(list.begin() + 2, {"marker_volume", list[0].unit, markers_.volume * count});
     list.push_back({"markers", "", count});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
-    if (hand_) geometry::sum_up(*hand_, D, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (heat_)
         for (auto& integral : heat_->integrals(state_, volume_target_)) list.push_back(std::move(integral));
     list.push_back({"escaped_markers", "", static_cast<real>(escaped)});
@@ -90,7 +90,7 @@ void Water<D>::save(Checkpoint& to) const {
     to.put_value("water.reals", reals);
     to.put_value("water.counts", counts);
     to.put_value("water.rate", rate_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     if (heat_) heat_->save(to);
 }
 
@@ -134,7 +134,7 @@ void Water<D>::restore(const Checkpoint& from) {
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !held_.alone(), markers_whole_ = false;
     make_whole();
     pressure_.set_surface(surface_, closed_, state_);

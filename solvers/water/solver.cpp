@@ -17,7 +17,7 @@ StepReport Water<D>::step(real dt) {
     move_bodies(dt);
     move_solids(state_.time + dt);
     move_surface(dt);                                   // Dx/Dt = u for markers, Dφ/Dt = 0
-    pour_and_drain(dt);                                 // emitters, open sides
+    apply_sources_and_sinks(dt);                        // emitters, open sides
     redistribute_markers();                             // keeps the number of markers per cell in bounds
     correct_surface(dt);                                // particle level-set correction, redistancing
     conduct(dt);                                        // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
@@ -56,7 +56,7 @@ real Water<D>::to_middle(real dt) {
 /// Initial rate of change of the velocity: the result of a step of dt without motion. The record of interactive forcing is restored.
 template <int D>
 void Water<D>::find_rate(real dt) {
-    const Hand account = hand_ ? *hand_ : Hand();
+    const BrushForcing account = brush_forcing_ ? *brush_forcing_ : BrushForcing();
     for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
     leapfrog_.keep(state_.u);
     forces(dt);
@@ -64,7 +64,7 @@ void Water<D>::find_rate(real dt) {
     extend_velocity(dt);
     leapfrog_.begin(state_.u, dt);
     for (int a = 0; a < D; ++a) state_.u[a] = before_[a];
-    if (hand_) *hand_ = account;
+    if (brush_forcing_) *brush_forcing_ = account;
 }
 
 template <int D>

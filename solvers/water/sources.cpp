@@ -102,7 +102,7 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
 /// Removes markers beyond open sides; the volume balance decreases by their share, because reseeding changes the number of markers and no
 /// marker has a fixed volume. Open emitters add markers.
 template <int D>
-void Water<D>::pour_and_drain(real dt) {
+void Water<D>::apply_sources_and_sinks(real dt) {
     const auto timed = passes_.time("sort markers");
     const auto [all, departed] = migrate_markers();
     if (!keeps_volume_ && departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
@@ -112,22 +112,22 @@ void Water<D>::pour_and_drain(real dt) {
         if (emitter.works(state_.time, state_.time + dt)) pours = true, poured += pour(emitter, dt);
     if (pours) volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(sum_of_ranks(poured));
     markers_.sort(frame_);
-    if (hand_) pour_and_drain_by_hand();
+    if (brush_forcing_) apply_brush_sources();
 }
 
 /// Interactive pouring adds a marker to each empty half cell of the brush, so the rate is limited by free space. Draining removes the
 /// markers under the brush. Level set and volume balance are updated.
 template <int D>
-void Water<D>::pour_and_drain_by_hand() {
-    const auto brush = hand_->at<D>(state_.time);
-    const bool pours = brush.kind == HandKind::pour;
-    if (!pours && brush.kind != HandKind::drain) return;
+void Water<D>::apply_brush_sources() {
+    const auto brush = brush_forcing_->at<D>(state_.time);
+    const bool pours = brush.kind == BrushKind::pour;
+    if (!pours && brush.kind != BrushKind::drain) return;
     const std::size_t all = markers_.count();
     if (!pours && all == 0) return;
     const real each = pours ? frame_.cell_volume() / Markers<D>::per_cell : volume_target_ / static_cast<real>(all);
     const auto account = [&](const Vec<D>& u, real volume) {
-        for (int a = 0; a < D; ++a) hand_->impulse[a] += state_.rho * volume * u[a];
-        hand_->mass += state_.rho * volume;
+        for (int a = 0; a < D; ++a) brush_forcing_->impulse[a] += state_.rho * volume * u[a];
+        brush_forcing_->mass += state_.rho * volume;
         volume_target_ += volume;
     };
     if (pours) {
@@ -246,7 +246,7 @@ void Water<D>::redistribute_markers() {
 }
 
 #define WEIR_INSTANTIATE(D)                                                  \
-    template void Water<D>::pour_and_drain(real);                            \
+    template void Water<D>::apply_sources_and_sinks(real);                   \
     template void Water<D>::impose_emitters(real, real Emitter<D>::Face::*); \
     template void Water<D>::carry_emitters_velocity(real);                   \
     template const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real);    \

@@ -96,7 +96,7 @@ bodies = [ { shape = "sphere", centre = [0.36, 0.34, 0.35], radius = 0.07, densi
                 s.u[a][i] = near ? hashed_random(7, ++key, 0) - 0.5 : 0;
             }
         bodies.start(s, solids);
-        bodies.stick(s, true);
+        bodies.couple_friction(s, true);
         bodies.set_no_slip_walls(s, solids, dt);
         for (const auto& f : s.no_slip_walls->inside) s.u[f.axis](f.face) = 0;  // no liquid
         before = s.u;

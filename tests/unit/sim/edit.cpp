@@ -1,4 +1,4 @@
-// A hand in a run between two steps: what is written is checked and made good, what comes and goes is counted, who looks on is called.
+// Edits of a run between two steps: what is written is checked and made good, what comes and goes is counted, who looks on is called.
 #include "core/slabs.hpp"
 #include "shared/device.hpp"
 #include "sim/registry.hpp"

@@ -1,4 +1,4 @@
-#include "particles/hand.hpp"
+#include "particles/brush.hpp"
 
 #include <algorithm>
 
@@ -34,55 +34,55 @@ void for_each_serial(const Index<D>& lo, const Index<D>& extent, F&& f) {
 }  // namespace
 
 template <int D>
-void HandOnParticles<D>::account(const Vec<D>& u, real mass) {
-    for (int a = 0; a < D; ++a) hand_->impulse[a] += mass * u[a];
-    hand_->mass += mass;
+void BrushOnParticles<D>::account(const Vec<D>& u, real mass) {
+    for (int a = 0; a < D; ++a) brush_forcing_->impulse[a] += mass * u[a];
+    brush_forcing_->mass += mass;
 }
 
 template <int D>
-void HandOnParticles<D>::apply(Flow<D>& f, real dt) {
-    const auto brush = hand_->at<D>(f.fluid.time);
+void BrushOnParticles<D>::apply(Flow<D>& f, real dt) {
+    const auto brush = brush_forcing_->at<D>(f.fluid.time);
     if (!brush.moves()) return;
     const Vec<D> most = Vec<D>::constant(f.fluid.domain.spacing / dt);
     for (int a = 0; a < D; ++a) {
         auto& va = f.fluid.v[static_cast<std::size_t>(a)];
-        hand_->impulse[a] += f.fluid.mass * block_sum(f.fluid.count(), [&](int i) -> real {
-                                 const Vec<D> x = f.fluid.position(i);
-                                 const real weight = brush.weight(x);
-                                 if (weight == 0) return 0;
-                                 real& u = va[static_cast<std::size_t>(i)];
-                                 const real change = hand_->share(weight, dt) * (brush.target(x, most)[a] - u);
-                                 u += change;
-                                 return change;
-                             });
+        brush_forcing_->impulse[a] += f.fluid.mass * block_sum(f.fluid.count(), [&](int i) -> real {
+                                          const Vec<D> x = f.fluid.position(i);
+                                          const real weight = brush.weight(x);
+                                          if (weight == 0) return 0;
+                                          real& u = va[static_cast<std::size_t>(i)];
+                                          const real change = brush_forcing_->share(weight, dt) * (brush.target(x, most)[a] - u);
+                                          u += change;
+                                          return change;
+                                      });
     }
 }
 
 template <int D>
-void HandOnParticles<D>::pour_and_drain(Fluid<D>& fluid) {
-    brush_ = hand_->at<D>(fluid.time);
-    if (brush_.kind == HandKind::pour) pour(fluid, brush_);
-    if (brush_.kind == HandKind::drain) drain(fluid, brush_);
+void BrushOnParticles<D>::apply_sources_and_sinks(Fluid<D>& fluid) {
+    brush_ = brush_forcing_->at<D>(fluid.time);
+    if (brush_.kind == BrushKind::pour) pour(fluid, brush_);
+    if (brush_.kind == BrushKind::drain) drain(fluid, brush_);
 }
 
 template <int D>
-real HandOnParticles<D>::warm(Fluid<D>& fluid, const Heat<D>& heat, real dt) {
-    if (brush_.kind != HandKind::heat) return 0;
+real BrushOnParticles<D>::warm(Fluid<D>& fluid, const Heat<D>& heat, real dt) {
+    if (brush_.kind != BrushKind::heat) return 0;
     const real wanted = heat.enthalpy(brush_.temperature);
     const real given = fluid.mass * block_sum(fluid.count(), [&](int i) -> real {
                            const real weight = brush_.weight(fluid.position(i));
                            if (weight == 0) return 0;
                            real& h = fluid.enthalpy[static_cast<std::size_t>(i)];
-                           const real change = hand_->share(weight, dt) * (wanted - h);
+                           const real change = brush_forcing_->share(weight, dt) * (wanted - h);
                            h += change;
                            return change;
                        });
-    hand_->heat += given;
+    brush_forcing_->heat += given;
     return given;
 }
 
 template <int D>
-void HandOnParticles<D>::pour(Fluid<D>& fluid, const Brush<D>& brush) {
+void BrushOnParticles<D>::pour(Fluid<D>& fluid, const Brush<D>& brush) {
     const Vec<D> reach = Vec<D>::constant(brush.radius);
     Index<D> lo = cell_below(fluid, brush.centre - reach), hi = cell_below(fluid, brush.centre + reach);
     const Index<D> last = cell_below(fluid, fluid.domain.hi - Vec<D>::constant(0.5 * fluid.domain.spacing));
@@ -103,7 +103,7 @@ void HandOnParticles<D>::pour(Fluid<D>& fluid, const Brush<D>& brush) {
 }
 
 template <int D>
-void HandOnParticles<D>::mark_taken(const Fluid<D>& fluid, const Index<D>& lo, const Index<D>& extent) {
+void BrushOnParticles<D>::mark_taken(const Fluid<D>& fluid, const Index<D>& lo, const Index<D>& extent) {
     taken_.assign(product(extent), 0);
     const real d = fluid.domain.spacing;
     for (int i = 0; i < fluid.count(); ++i) {
@@ -126,7 +126,7 @@ void HandOnParticles<D>::mark_taken(const Fluid<D>& fluid, const Index<D>& lo, c
 }
 
 template <int D>
-void HandOnParticles<D>::drain(Fluid<D>& fluid, const Brush<D>& brush) {
+void BrushOnParticles<D>::drain(Fluid<D>& fluid, const Brush<D>& brush) {
     fluid.remove_if([&](int i) {
         if (!brush.covers(fluid.position(i))) return false;
         account(fluid.velocity(i), -fluid.mass);
@@ -134,7 +134,7 @@ void HandOnParticles<D>::drain(Fluid<D>& fluid, const Brush<D>& brush) {
     });
 }
 
-template class HandOnParticles<2>;
-template class HandOnParticles<3>;
+template class BrushOnParticles<2>;
+template class BrushOnParticles<3>;
 
 }  // namespace weir::particles

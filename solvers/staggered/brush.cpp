@@ -1,6 +1,6 @@
 // Interactive forcing on the grid: each face that touches fluid follows the brush, weighted at the face centre. Momentum added is counted
 // with the open fluid fraction of the face's volume.
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "staggered/effects.hpp"
 
 namespace weir::staggered {
@@ -8,15 +8,15 @@ namespace weir::staggered {
 namespace {
 
 template <int D>
-class HandOnGrid final : public MacEffect<D> {
+class BrushOnGrid final : public MacEffect<D> {
 public:
-    HandOnGrid(std::shared_ptr<Hand> hand, Stage stage) : hand_(std::move(hand)), stage_(stage) {}
+    BrushOnGrid(std::shared_ptr<BrushForcing> forcing, Stage stage) : brush_forcing_(std::move(forcing)), stage_(stage) {}
     Stage stage() const override { return stage_; }
     void apply(MacState<D>& s, real dt) override {
-        const auto brush = hand_->at<D>(s.time);
+        const auto brush = brush_forcing_->at<D>(s.time);
         if (brush.moves()) push(s, brush, dt);
-        if (auto* smoke = s.find("smoke"); smoke && (brush.kind == HandKind::pour || brush.kind == HandKind::drain))
-            stain(s, *smoke, brush, brush.kind == HandKind::pour ? 1 : 0, dt);
+        if (auto* smoke = s.find("smoke"); smoke && (brush.kind == BrushKind::pour || brush.kind == BrushKind::drain))
+            stain(s, *smoke, brush, brush.kind == BrushKind::pour ? 1 : 0, dt);
     }
 
 private:
@@ -55,11 +55,11 @@ private:
                 const Vec<D> x = s.u.face_centre(a, I);
                 const real weight = brush.weight(x), share = weight > 0 ? fluid_share(s, a, I) : 0;
                 if (share == 0) return 0;
-                const real change = hand_->share(weight, dt) * (brush.target(x, most)[a] - s.u[a](I));
+                const real change = brush_forcing_->share(weight, dt) * (brush.target(x, most)[a] - s.u[a](I));
                 s.u[a](I) += change;
                 return share * change;
             });
-            hand_->impulse[a] += s.rho * s.u.cell_volume() * given;
+            brush_forcing_->impulse[a] += s.rho * s.u.cell_volume() * given;
         }
         sync_periodic(s.u, s.sides);
     }
@@ -67,26 +67,26 @@ private:
         const Nodes<D> cells = under(brush, s.u, all_cells(s.extent()));
         for_each_in(cells.lo, cells.hi, [&](const Index<D>& I) {
             const real weight = brush.weight(s.u.cell_centre(I));
-            if (weight > 0) smoke(I) += hand_->share(weight, dt) * (to - smoke(I));
+            if (weight > 0) smoke(I) += brush_forcing_->share(weight, dt) * (to - smoke(I));
         });
     }
 
-    std::shared_ptr<Hand> hand_;
+    std::shared_ptr<BrushForcing> brush_forcing_;
     Stage stage_;
 };
 
 }  // namespace
 
-std::initializer_list<HandKind> kinds_of_hand(const scene::Scene& scene) {
-    return geometry::kinds_of_hand(scene.has("substance"), !scene.root().tables("bodies").empty());
+std::initializer_list<BrushKind> kinds_of_brush(const scene::Scene& scene) {
+    return geometry::kinds_of_brush(scene.has("substance"), !scene.root().tables("bodies").empty());
 }
 
 template <int D>
-std::unique_ptr<MacEffect<D>> hand_effect(std::shared_ptr<Hand> hand, Stage stage) {
-    return std::make_unique<HandOnGrid<D>>(std::move(hand), stage);
+std::unique_ptr<MacEffect<D>> brush_effect(std::shared_ptr<BrushForcing> forcing, Stage stage) {
+    return std::make_unique<BrushOnGrid<D>>(std::move(forcing), stage);
 }
 
-template std::unique_ptr<MacEffect<2>> hand_effect<2>(std::shared_ptr<Hand>, Stage);
-template std::unique_ptr<MacEffect<3>> hand_effect<3>(std::shared_ptr<Hand>, Stage);
+template std::unique_ptr<MacEffect<2>> brush_effect<2>(std::shared_ptr<BrushForcing>, Stage);
+template std::unique_ptr<MacEffect<3>> brush_effect<3>(std::shared_ptr<BrushForcing>, Stage);
 
 }  // namespace weir::staggered

@@ -1,6 +1,6 @@
-// The hand: what it gives is what the fluid has got, it touches nothing beyond its brush, no target is faster than a cell a step, and what
+// The brush: what it gives is what the fluid has got, it touches nothing beyond its brush, no target is faster than a cell a step, and what
 // it pours and drains is counted.
-#include "core/hand.hpp"
+#include "core/brush.hpp"
 #include "sim/registry.hpp"
 #include "sim/simulation.hpp"
 #include "support/temporary_folder.hpp"
@@ -35,7 +35,7 @@ std::string box(const std::string& solver, real dt, const std::string& more, int
 std::string keyframe(real time, const std::string& kind, const std::string& centre, real radius, const std::string& more) {
     return fmt::format("{{ time = {}, kind = \"{}\", centre = {}, radius = {}, {} }}", time, kind, centre, radius, more);
 }
-std::string hand(const std::string& frames) { return "effects.hand = { rate = 40, keyframes = [ " + frames + " ] }\n"; }
+std::string brush(const std::string& frames) { return "effects.hand = { rate = 40, keyframes = [ " + frames + " ] }\n"; }
 
 Simulation start(const std::string& text) { return Simulation(scene::parse(text, "hand.toml", sim::schemas())); }
 real integral(const Simulation& simulation, const std::string& name) {
@@ -60,11 +60,11 @@ std::string state_of(const Simulation& simulation) {
 
 const std::string periodic_2d = ", periodic = [\"x\", \"y\"]", periodic_3d = ", periodic = [\"x\", \"y\", \"z\"]";
 
-TEST_IN_2D_AND_3D("in a periodic box with fluxes the momentum of the fluid is what the hand gave, push and pull, after many steps") {
+TEST_IN_2D_AND_3D("in a periodic box with fluxes the momentum of the fluid is what the brush gave, push and pull, after many steps") {
     const std::string frames = keyframe(0, "push", list<D>(0.4, 0.5, 0.5), 0.3, "velocity = " + list<D>(1, 0.5, -0.25)) + ", " +
                                keyframe(0.03, "pull", list<D>(0.6, 0.5, 0.5), 0.25, "speed = 1.0");
     auto simulation =
-        start(box<D>("mac", 0.005, "scheme = { advection = \"conservative\", poisson = { tolerance = 1e-12 } }\n" + hand(frames), cells(D),
+        start(box<D>("mac", 0.005, "scheme = { advection = \"conservative\", poisson = { tolerance = 1e-12 } }\n" + brush(frames), cells(D),
                      "", D == 2 ? periodic_2d : periodic_3d));
     for (int s = 0; s < 12; ++s) simulation.step();
     const Vec<D> given = vector<D>(simulation, "hand_impulse"), has = vector<D>(simulation, "momentum");
@@ -75,12 +75,12 @@ TEST_IN_2D_AND_3D("in a periodic box with fluxes the momentum of the fluid is wh
     EXPECT_LT(norm(has - given), std::pow(cells(D), D) * 36 * 12 * 2.2e-16 * 1000);
 }
 
-TEST_IN_2D_AND_3D("a ball of particles has the momentum that the hand gave it, to the single precision of its pairs") {
+TEST_IN_2D_AND_3D("a ball of particles has the momentum that the brush gave it, to the single precision of its pairs") {
     for (const char* solver : {"pbf", "sph"}) {
         const real dt = solver == std::string("pbf") ? 0.005 : 0.0005;
         const std::string frames = keyframe(0, "push", list<D>(0.4, 0.5, 0.5), 0.2, "velocity = " + list<D>(1, 0.5, -0.25)) + ", " +
                                    keyframe(5 * dt, "pull", list<D>(0.6, 0.5, 0.5), 0.15, "speed = 0.5");
-        auto simulation = start(box<D>(solver, dt, hand(frames)));
+        auto simulation = start(box<D>(solver, dt, brush(frames)));
         const real mass = integral(simulation, "mass");
         const Vec<D> before = vector<D>(simulation, "momentum");
         for (int s = 0; s < 10; ++s) simulation.step();
@@ -97,11 +97,11 @@ TEST_IN_2D_AND_3D("a ball of particles has the momentum that the hand gave it, t
 TEST_IN_2D_AND_3D("a floating ball of water has it to half the layer of cells in which its surface lies") {
     for (const char* solver : {"mac_water", "tallcell"}) {
         const std::string frames = keyframe(0, "push", list<D>(0.5, 0.5, 0.5), 1, "velocity = " + list<D>(0.5, 0, 0));
-        auto simulation = start(box<D>(solver, 0.005, hand(frames), 24));
+        auto simulation = start(box<D>(solver, 0.005, brush(frames), 24));
         for (int s = 0; s < 8; ++s) simulation.step();
         const Vec<D> given = vector<D>(simulation, "hand_impulse"), has = vector<D>(simulation, "momentum");
         // A face is of the liquid or not, by its two cells: the surface is known to half a cell all around, and is not faster than the
-        // hand.
+        // brush.
         const real half_layer = (D == 2 ? 2 * pi * 0.3 : 4 * pi * 0.3 * 0.3) * 0.5 / 24;
         EXPECT_GT(norm(given), 2 * 1000 * half_layer * 0.5) << solver;
         EXPECT_LT(norm(has - given), 1000 * half_layer * 0.5) << solver;
@@ -117,12 +117,12 @@ std::string basin(const std::string& model, const std::string& more) {
         D, D == 2 ? "[48, 1]" : "[48, 1, 12]", list<D>(2, 1, 1), model, list<D>(0, -9.81, 0), more);
 }
 
-TEST_IN_2D_AND_3D("water on a level bed has the momentum that the hand gave it, and the volume that it poured less what it drained") {
+TEST_IN_2D_AND_3D("water on a level bed has the momentum that the brush gave it, and the volume that it poured less what it drained") {
     const std::string frames = keyframe(0, "push", list<D>(0.5, 9, 0.5), 0.4, "velocity = " + list<D>(0.4, 0, 0.1)) + ", " +
                                keyframe(0.05, "pour", list<D>(1.2, 9, 0.5), 0.3, "speed = 0.5, velocity = " + list<D>(0.2, 0, 0)) + ", " +
                                keyframe(0.1, "pull", list<D>(1, 9, 0.5), 0.4, "speed = 0.3") + ", " +
                                keyframe(0.15, "drain", list<D>(0.5, 9, 0.5), 0.3, "speed = 0.5");
-    auto simulation = start(basin<D>("shallow_water", hand(frames)));
+    auto simulation = start(basin<D>("shallow_water", brush(frames)));
     const real before = integral(simulation, "volume");
     for (int s = 0; s < 40; ++s) simulation.step();
     // Fluxes take from one column what they give to the next; walls push along z: only the momentum along x is kept. Rounding: a thousand
@@ -132,7 +132,7 @@ TEST_IN_2D_AND_3D("water on a level bed has the momentum that the hand gave it, 
     EXPECT_NEAR(integral(simulation, "momentum_x"), integral(simulation, "hand_impulse_x"), rounding);
     EXPECT_NEAR(integral(simulation, "volume") - before, integral(simulation, "hand_mass") / 1000, 1e-3 * rounding);
     EXPECT_NEAR(integral(simulation, "volume_balance"), before, 1e-3 * rounding);
-    simulation = start(basin<D>("shallow_water", hand(keyframe(0, "pour", list<D>(1, 0, 0.5), 0.3, "speed = 0.5"))));
+    simulation = start(basin<D>("shallow_water", brush(keyframe(0, "pour", list<D>(1, 0, 0.5), 0.3, "speed = 0.5"))));
     for (int s = 0; s < 10; ++s) simulation.step();
     // speed x time x the integral of (1 - r^2/R^2)^2: 16/15 R on a line, pi R^2/3 on a disk; by columns of which 7 make a radius: their
     // rectangle rule on this smooth hump is good to a per cent.
@@ -143,7 +143,7 @@ TEST_IN_2D_AND_3D("water on a level bed has the momentum that the hand gave it, 
 TEST_IN_2D_AND_3D("columns that pull their neighbours are poured and drained, never below half their depth, and the rest is refused") {
     const std::string frames = keyframe(0, "pour", list<D>(1.2, 0, 0.5), 0.3, "speed = 0.5") + ", " +
                                keyframe(0.05, "drain", list<D>(0.5, 0, 0.5), 0.3, "speed = 50.0");
-    auto simulation = start(basin<D>("columns", hand(frames)));
+    auto simulation = start(basin<D>("columns", brush(frames)));
     const real before = integral(simulation, "volume");
     for (int s = 0; s < 10; ++s) simulation.step();
     const real poured = integral(simulation, "hand_mass") / 1000;
@@ -155,7 +155,7 @@ TEST_IN_2D_AND_3D("columns that pull their neighbours are poured and drained, ne
     const FieldSet fields = simulation.fields();
     for (const real depth : fields.find("", "depth")->data[0])
         EXPECT_GT(depth, 0.1);  // half of 0.5 m, and the wave that runs into the hole
-    EXPECT_THROW(start(basin<D>("columns", hand(keyframe(0, "push", list<D>(1, 0, 0.5), 0.3, "velocity = " + list<D>(1, 0, 0))))),
+    EXPECT_THROW(start(basin<D>("columns", brush(keyframe(0, "push", list<D>(1, 0, 0.5), 0.3, "velocity = " + list<D>(1, 0, 0))))),
                  BadInput);
 }
 
@@ -166,7 +166,7 @@ TEST("what is poured on tall cells and drained from them is the volume that they
         "solver = \"tallcell\"\ndim = 2\ngrid = { cells = [48, 48], size = [1, 1] }\ntime = { end = 1.0, dt = 0.002 }\nfluid.density = "
         "1000\n"
         "scheme.layers = 8\neffects.gravity.g = [0, -9.81]\nliquid = [ { shape = \"box\", min = [0, 0], max = [1, 0.5] } ]\n" +
-        hand(frames));
+        brush(frames));
     const real before = integral(simulation, "volume");
     while (simulation.time() < 0.019) simulation.step();
     const real poured = integral(simulation, "hand_mass") / 1000, ball = pi * 0.15 * 0.15;
@@ -184,7 +184,7 @@ TEST("a heated brush gives the heat that the fluid has more, comes to its temper
     for (const char* solver : {"mac", "mac_water", "pbf", "sph"}) {
         const real dt = solver == std::string("sph") ? 0.0005 : 0.005;
         const std::string warm = "substance = \"water\"\ninitial.temperature = { name = \"constant\", value = 300.0 }\n";
-        auto simulation = start(box<2>(solver, dt, warm + hand(keyframe(0, "heat", "[0.5, 0.5]", 0.2, "temperature = 340.0"))));
+        auto simulation = start(box<2>(solver, dt, warm + brush(keyframe(0, "heat", "[0.5, 0.5]", 0.2, "temperature = 340.0"))));
         const real before = integral(simulation, "heat");
         for (int s = 0; s < 20; ++s) simulation.step();
         const real given = integral(simulation, "hand_heat");
@@ -201,13 +201,13 @@ TEST("a heated brush gives the heat that the fluid has more, comes to its temper
     }
 }
 
-TEST_IN_2D_AND_3D("a body in the air follows the hand as a damped spring does, and has the momentum that it gave") {
+TEST_IN_2D_AND_3D("a body in the air follows the brush as a damped spring does, and has the momentum that it gave") {
     const std::string scene = fmt::format(
         "liquid = [ {{ shape = \"box\", min = {}, max = {} }} ]\n"
         "bodies = [ {{ shape = \"sphere\", centre = {}, radius = 0.1, density = 500.0 }} ]\n",
         list<D>(0, 0, 0), list<D>(1, 0.2, 1), list<D>(0.4, 0.7, 0.5));
     for (const std::string solver : {"mac_water", "pbf", "sph"}) {
-        std::string text = box<D>(solver, 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")) + scene);
+        std::string text = box<D>(solver, 0.002, brush(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")) + scene);
         text.erase(text.find("liquid"), text.find('\n', text.find("liquid")) - text.find("liquid") + 1);
         auto simulation = start(text);
         const auto at = [&](int a) { return simulation.fields().find("bodies", "position")->data[static_cast<std::size_t>(a)][0]; };
@@ -224,16 +224,16 @@ TEST_IN_2D_AND_3D("a body in the air follows the hand as a damped spring does, a
         EXPECT_NEAR((at(1) - 0.6) / 0.1, left, 0.05 * left);
         for (int s = 0; s < 200; ++s) simulation.step();
         EXPECT_NEAR(at(0), 0.6, 0.2 * 0.02);  // (1 + 10) exp(-10) = 5e-4 of the way
-        EXPECT_THROW(start(box<D>(solver, 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 1")) + scene)), BadInput);
-        EXPECT_THROW(start(box<D>(solver, 0.002, hand(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")))), BadInput);
+        EXPECT_THROW(start(box<D>(solver, 0.002, brush(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 1")) + scene)), BadInput);
+        EXPECT_THROW(start(box<D>(solver, 0.002, brush(keyframe(0, "grab", list<D>(0.6, 0.6, 0.5), 0.1, "body = 0")))), BadInput);
     }
 }
 
-TEST_IN_2D_AND_3D("a hand that covers no fluid, or is off, changes no bit") {
+TEST_IN_2D_AND_3D("a brush that covers no fluid, or is off, changes no bit") {
     for (const char* solver : {"mac_water", "tallcell", "pbf", "sph"}) {
-        auto off = start(box<D>(solver, 0.002, hand("{ time = 0.0, kind = \"off\" }")));
+        auto off = start(box<D>(solver, 0.002, brush("{ time = 0.0, kind = \"off\" }")));
         auto away =
-            start(box<D>(solver, 0.002, hand(keyframe(0, "push", list<D>(0.08, 0.08, 0.08), 0.08, "velocity = " + list<D>(1, 1, 1)))));
+            start(box<D>(solver, 0.002, brush(keyframe(0, "push", list<D>(0.08, 0.08, 0.08), 0.08, "velocity = " + list<D>(1, 1, 1)))));
         for (int s = 0; s < 3; ++s) off.step(), away.step();
         EXPECT_EQ(state_of(off), state_of(away)) << solver;
         EXPECT_EQ(integral(away, "hand_mass"), 0);
@@ -242,7 +242,7 @@ TEST_IN_2D_AND_3D("a hand that covers no fluid, or is off, changes no bit") {
 
 TEST_IN_2D_AND_3D("beyond the brush no particle is touched in the step in which it pushes") {
     const auto frames = [](const char* kind) {
-        return hand(keyframe(0, kind, list<D>(0.5, 0.5, 0.5), 0.15, "velocity = " + list<D>(1, 0, 0)));
+        return brush(keyframe(0, kind, list<D>(0.5, 0.5, 0.5), 0.15, "velocity = " + list<D>(1, 0, 0)));
     };
     auto off = start(box<D>("sph", 0.0005, frames("off"))), pushed = start(box<D>("sph", 0.0005, frames("push")));
     off.step(), pushed.step();
@@ -268,7 +268,7 @@ TEST("a target is cut to a cell, or a spacing, a step") {
     const real dt = 0.01, h = 1.0 / cells(2);
     for (const char* solver : {"mac", "mac_water", "pbf", "sph"}) {
         auto simulation =
-            start(box<2>(solver, dt, hand(keyframe(0, "push", "[0.5, 0.5]", 0.2, "velocity = [1e6, 0]")), cells(2), ", guard = \"off\""));
+            start(box<2>(solver, dt, brush(keyframe(0, "push", "[0.5, 0.5]", 0.2, "velocity = [1e6, 0]")), cells(2), ", guard = \"off\""));
         simulation.step();
         EXPECT_LE(integral(simulation, std::string(solver) == "mac_water" ? "momentum_x" : "max_speed") /
                       (std::string(solver) == "mac_water" ? 1000 * pi * 0.3 * 0.3 : 1),
@@ -283,7 +283,7 @@ TEST_IN_2D_AND_3D("what is poured is there, a drain takes it out, and the ledger
         const real dt = 0.002;
         const std::string frames = keyframe(0, "pour", list<D>(0.2, 0.8, 0.5), 0.15, "velocity = " + list<D>(0, -0.5, 0)) + ", " +
                                    keyframe(0.02, "drain", list<D>(0.5, 0.5, 0.5), 0.1, "speed = 0.0");
-        auto simulation = start(box<D>(solver, dt, hand(frames)));
+        auto simulation = start(box<D>(solver, dt, brush(frames)));
         const std::string volume = std::string(solver) == "mac_water" ? "volume_target" : "volume";
         const real before = integral(simulation, volume);
         while (simulation.time() < 0.019) simulation.step();
@@ -302,7 +302,7 @@ TEST_IN_2D_AND_3D("what is poured is there, a drain takes it out, and the ledger
 TEST("smoke is poured and drained where the fluid carries some") {
     const std::string smoke = "initial.smoke = { name = \"constant\", value = 0.5 }\n";
     for (const char* kind : {"pour", "drain"}) {
-        auto simulation = start(box<2>("mac", 0.01, smoke + hand(keyframe(0, kind, "[0.5, 0.5]", 0.2, "velocity = [0, 0]"))));
+        auto simulation = start(box<2>("mac", 0.01, smoke + brush(keyframe(0, kind, "[0.5, 0.5]", 0.2, "velocity = [0, 0]"))));
         const real before = integral(simulation, "total_smoke");
         for (int s = 0; s < 20; ++s) simulation.step();
         const real change = (integral(simulation, "total_smoke") - before) / (0.5 * pi * 0.04);
@@ -311,11 +311,11 @@ TEST("smoke is poured and drained where the fluid carries some") {
     }
 }
 
-TEST_IN_2D_AND_3D("a run with a hand goes on from its checkpoint bit for bit") {
+TEST_IN_2D_AND_3D("a run with a brush goes on from its checkpoint bit for bit") {
     for (const char* solver : {"mac", "mac_water", "tallcell", "pbf", "sph"}) {
         const std::string frames = keyframe(0, "push", list<D>(0.4, 0.5, 0.5), 0.2, "velocity = " + list<D>(0.5, 0.5, 0)) + ", " +
                                    keyframe(0.008, "pour", list<D>(0.2, 0.8, 0.5), 0.15, "velocity = " + list<D>(0, -0.5, 0));
-        const std::string text = box<D>(solver, 0.002, hand(frames));
+        const std::string text = box<D>(solver, 0.002, brush(frames));
         auto whole = start(text), half = start(text);
         for (int s = 0; s < 8; ++s) whole.step();
         for (int s = 0; s < 3; ++s) half.step();
@@ -330,27 +330,27 @@ TEST_IN_2D_AND_3D("a run with a hand goes on from its checkpoint bit for bit") {
 
 TEST("keyframes added while a run goes on are those of the scene that names them, and survive a change of a key") {
     const std::string text = box<2>("pbf", 0.002, "effects.gravity.g = [0, -1]\n");
-    auto live = start(text + hand(""));
-    const auto act = [&](HandKind kind) {
-        live.solver().hand()->keys.push_back({live.time(), kind, {{0.4, 0.5, 0}}, 0.2, {{0.5, 0, 0}}, 0});
+    auto live = start(text + brush(""));
+    const auto act = [&](BrushKind kind) {
+        live.solver().brush()->keys.push_back({live.time(), kind, {{0.4, 0.5, 0}}, 0.2, {{0.5, 0, 0}}, 0});
         return live.time();
     };
     for (int s = 0; s < 3; ++s) live.step();
-    const real from = act(HandKind::push);
+    const real from = act(BrushKind::push);
     for (int s = 0; s < 3; ++s) live.step();
     const real turned = live.horizon();
     live.set_at(turned, {"effects.gravity.g", "[0, 3]"});
     for (int s = 0; s < 6; ++s) live.step();
-    const real until = act(HandKind::off);
+    const real until = act(BrushKind::off);
     for (int s = 0; s < 3; ++s) live.step();
     auto replay = start(
         text + fmt::format("changes = [ {{ time = {}, key = \"effects.gravity.g\", value = [0, 3] }} ]\n", turned) +
-        hand(keyframe(from, "push", "[0.4, 0.5]", 0.2, "velocity = [0.5, 0]") + fmt::format(", {{ time = {}, kind = \"off\" }}", until)));
+        brush(keyframe(from, "push", "[0.4, 0.5]", 0.2, "velocity = [0.5, 0]") + fmt::format(", {{ time = {}, kind = \"off\" }}", until)));
     for (int s = 0; s < 15; ++s) replay.step();
     EXPECT_EQ(state_of(live), state_of(replay));
 }
 
-TEST("devices and the reference refuse the hand by name, and keyframes that say too little or lie out of order are refused") {
+TEST("devices and the reference refuse the brush by name, and keyframes that say too little or lie out of order are refused") {
     const auto said = [](const std::string& text) -> std::string {
         try {
             start(text);
@@ -361,13 +361,13 @@ TEST("devices and the reference refuse the hand by name, and keyframes that say 
     };
     const std::string push = keyframe(0.5, "push", "[0.4, 0.5]", 0.2, "velocity = [0.5, 0]");
     EXPECT_NE(
-        said(box<2>("pbf", 0.002, "scheme.backend = \"reference\"\n" + hand(push))).find("the backend reference has no effect \"hand\""),
+        said(box<2>("pbf", 0.002, "scheme.backend = \"reference\"\n" + brush(push))).find("the backend reference has no effect \"hand\""),
         std::string::npos);
-    EXPECT_NE(said(box<2>("pbf", 0.002, hand(keyframe(0, "heat", "[0.4, 0.5]", 0.2, "temperature = 300.0"))))
+    EXPECT_NE(said(box<2>("pbf", 0.002, brush(keyframe(0, "heat", "[0.4, 0.5]", 0.2, "temperature = 300.0"))))
                   .find("no action \"heat\" in this scene"),
               std::string::npos);
-    EXPECT_NE(said(box<2>("pbf", 0.002, hand("{ time = 0.0, radius = 0.1 }"))).find("keyframes[0] has no \"centre\""), std::string::npos);
-    EXPECT_NE(said(box<2>("pbf", 0.002, hand(push + ", { time = 0.1, kind = \"off\" }"))).find("before that of the previous keyframe"),
+    EXPECT_NE(said(box<2>("pbf", 0.002, brush("{ time = 0.0, radius = 0.1 }"))).find("keyframes[0] has no \"centre\""), std::string::npos);
+    EXPECT_NE(said(box<2>("pbf", 0.002, brush(push + ", { time = 0.1, kind = \"off\" }"))).find("before that of the previous keyframe"),
               std::string::npos);
 }
 

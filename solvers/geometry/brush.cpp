@@ -1,4 +1,4 @@
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 
 #include <string>
 
@@ -7,7 +7,7 @@ namespace weir::geometry {
 using scene::Key;
 using scene::Type;
 
-scene::Variant hand_schema() {
+scene::Variant brush_schema() {
     const std::vector<Key> keyframe{
         {.name = "time",
          .type = Type::number,
@@ -22,7 +22,7 @@ scene::Variant hand_schema() {
                 "drain: fluid (smoke) is removed (columns sink with `speed`). heat: relax towards `temperature`; requires a substance. "
                 "grab: a spring from the centre of the brush to the centre of mass of a body. off: no forcing.",
          .fallback = std::string("push"),
-         .choices = {hand_kinds.begin(), hand_kinds.end()}},
+         .choices = {brush_kinds.begin(), brush_kinds.end()}},
         {.name = "centre", .type = Type::numbers, .doc = "Of the brush; required except for off.", .unit = "m", .length = -1},
         {.name = "radius", .type = Type::number, .doc = "Of the brush; required except for off.", .unit = "m", .min = 0, .min_open = true},
         {.name = "velocity",
@@ -66,14 +66,14 @@ scene::Variant hand_schema() {
 
 namespace {
 
-HandKind hand_kind_named(const std::string& name) {
-    return static_cast<HandKind>(std::find(hand_kinds.begin(), hand_kinds.end(), name) - hand_kinds.begin());
+BrushKind brush_kind_named(const std::string& name) {
+    return static_cast<BrushKind>(std::find(brush_kinds.begin(), brush_kinds.end(), name) - brush_kinds.begin());
 }
 
-std::string kinds_of(const Hand& hand) {
+std::string kinds_of(const BrushForcing& forcing) {
     std::string list;
-    for (std::size_t k = 0; k < hand_kinds.size(); ++k)
-        if (hand.can[k]) list += (list.empty() ? "" : ", ") + std::string(hand_kinds[k]);
+    for (std::size_t k = 0; k < brush_kinds.size(); ++k)
+        if (forcing.can[k]) list += (list.empty() ? "" : ", ") + std::string(brush_kinds[k]);
     return list;
 }
 
@@ -88,61 +88,63 @@ Vec<3> point(const scene::Table& t, const char* key) {
 
 }  // namespace
 
-std::shared_ptr<Hand> make_hand(const scene::Scene& scene, std::initializer_list<HandKind> kinds) {
+std::shared_ptr<BrushForcing> make_brush(const scene::Scene& scene, std::initializer_list<BrushKind> kinds) {
     const scene::Table* table = scene.effect("hand");
     if (!table) return nullptr;
-    auto hand = std::make_shared<Hand>();
-    hand->rate = table->number("rate");
-    hand->allow({HandKind::off});
-    hand->allow(kinds);
+    auto forcing = std::make_shared<BrushForcing>();
+    forcing->rate = table->number("rate");
+    forcing->allow({BrushKind::off});
+    forcing->allow(kinds);
     const auto& frames = table->tables("keyframes");
-    hand->keys.reserve(frames.size());
+    forcing->keys.reserve(frames.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const scene::Table& t = frames[i];
         const std::string path = "effects.hand.keyframes[" + std::to_string(i) + "]";
-        hand->keys.push_back({t.number("time"), hand_kind_named(t.text("kind")), point(t, "centre"), t.number_or("radius", 0),
-                              point(t, "velocity"), t.number("speed"), t.number_or("temperature", 0), static_cast<int>(t.integer("body"))});
-        if (i > 0 && hand->keys[i].time < hand->keys[i - 1].time)
+        forcing->keys.push_back({t.number("time"), brush_kind_named(t.text("kind")), point(t, "centre"), t.number_or("radius", 0),
+                                 point(t, "velocity"), t.number("speed"), t.number_or("temperature", 0),
+                                 static_cast<int>(t.integer("body"))});
+        if (i > 0 && forcing->keys[i].time < forcing->keys[i - 1].time)
             scene.refuse(path + ".time", "it is before that of the previous keyframe");
-        if (!hand->has(hand->keys[i].kind))
-            scene.refuse(path + ".kind", "the brush has no action \"" + t.text("kind") + "\" in this scene", "it has " + kinds_of(*hand));
-        if (hand->keys[i].kind == HandKind::off) continue;
-        if (hand->keys[i].kind == HandKind::heat && !t.has("temperature"))
+        if (!forcing->has(forcing->keys[i].kind))
+            scene.refuse(path + ".kind", "the brush has no action \"" + t.text("kind") + "\" in this scene",
+                         "it has " + kinds_of(*forcing));
+        if (forcing->keys[i].kind == BrushKind::off) continue;
+        if (forcing->keys[i].kind == BrushKind::heat && !t.has("temperature"))
             scene.refuse(path, path + " has no \"temperature\"", "action heat requires it");
         for (const char* key : {"centre", "radius"})
             if (!t.has(key)) scene.refuse(path, path + " has no \"" + key + "\"", "only action \"off\" does not require it");
     }
-    return hand;
+    return forcing;
 }
 
-std::initializer_list<HandKind> kinds_of_hand(bool heats, bool holds) {
-    using enum HandKind;
+std::initializer_list<BrushKind> kinds_of_brush(bool heats, bool holds) {
+    using enum BrushKind;
     static constexpr auto on_fluid = {push, pull, pour, drain}, heating = {push, pull, pour, drain, heat},
                           holding = {push, pull, pour, drain, grab}, both = {push, pull, pour, drain, heat, grab};
     return heats && holds ? both : heats ? heating : holds ? holding : on_fluid;
 }
 
-scene::Table to_table(const HandKey& key, int dim) {
+scene::Table to_table(const BrushKeyframe& key, int dim) {
     const scene::Place given{1, 1};
     const auto list = [&](const Vec<3>& v) { return std::vector<double>(v.begin(), v.begin() + dim); };
     scene::Table t;
     t.set("time", key.time, given);
-    t.set("kind", std::string(hand_kinds[static_cast<std::size_t>(key.kind)]), given);
-    if (key.kind == HandKind::off) return t;
+    t.set("kind", std::string(brush_kinds[static_cast<std::size_t>(key.kind)]), given);
+    if (key.kind == BrushKind::off) return t;
     t.set("centre", list(key.centre), given);
     t.set("radius", key.radius, given);
     if (key.speed != 0) t.set("speed", key.speed, given);
-    if (key.kind == HandKind::heat) t.set("temperature", key.temperature, given);
-    if (key.kind == HandKind::grab) t.set("body", std::int64_t{key.body}, given);
-    if (key.kind == HandKind::push || key.kind == HandKind::pour) t.set("velocity", list(key.velocity), given);
+    if (key.kind == BrushKind::heat) t.set("temperature", key.temperature, given);
+    if (key.kind == BrushKind::grab) t.set("body", std::int64_t{key.body}, given);
+    if (key.kind == BrushKind::push || key.kind == BrushKind::pour) t.set("velocity", list(key.velocity), given);
     return t;
 }
 
-void sum_up(const Hand& hand, int dim, std::vector<Integral>& list) {
+void sum_up(const BrushForcing& forcing, int dim, std::vector<Integral>& list) {
     const std::string per_depth = dim == 2 ? "/m" : "";
-    for (int a = 0; a < dim; ++a) list.push_back({std::string("hand_impulse_") + "xyz"[a], "kg m/s" + per_depth, hand.impulse[a]});
-    list.push_back({"hand_mass", "kg" + per_depth, hand.mass});
-    if (hand.has(HandKind::heat)) list.push_back({"hand_heat", "J" + per_depth, hand.heat});
+    for (int a = 0; a < dim; ++a) list.push_back({std::string("hand_impulse_") + "xyz"[a], "kg m/s" + per_depth, forcing.impulse[a]});
+    list.push_back({"hand_mass", "kg" + per_depth, forcing.mass});
+    if (forcing.has(BrushKind::heat)) list.push_back({"hand_heat", "J" + per_depth, forcing.heat});
 }
 
 }  // namespace weir::geometry

@@ -21,12 +21,12 @@
 
 namespace weir {
 
-enum class HandKind { off, push, pull, pour, drain, heat, grab };
-inline constexpr std::array hand_kinds{"off", "push", "pull", "pour", "drain", "heat", "grab"};  // in the order of HandKind
+enum class BrushKind { off, push, pull, pour, drain, heat, grab };
+inline constexpr std::array brush_kinds{"off", "push", "pull", "pour", "drain", "heat", "grab"};  // in the order of BrushKind
 
-struct HandKey {
+struct BrushKeyframe {
     real time = 0;  // applies from this time on [s]
-    HandKind kind = HandKind::off;
+    BrushKind kind = BrushKind::off;
     Vec<3> centre{};
     real radius = 0;
     Vec<3> velocity{};     // the target of push and pour [m/s]
@@ -38,12 +38,12 @@ struct HandKey {
 /// The brush during one step.
 template <int D>
 struct Brush {
-    HandKind kind = HandKind::off;
+    BrushKind kind = BrushKind::off;
     Vec<D> centre{}, velocity{};
     real radius = 0, speed = 0, temperature = 0;
     int body = -1;
 
-    bool moves() const { return kind == HandKind::push || kind == HandKind::pull || kind == HandKind::pour; }
+    bool moves() const { return kind == BrushKind::push || kind == BrushKind::pull || kind == BrushKind::pour; }
     bool covers(const Vec<D>& x) const { return dot(x - centre, x - centre) < radius * radius; }
     real weight(const Vec<D>& x) const {
         const real s = 1 - dot(x - centre, x - centre) / (radius * radius);
@@ -51,31 +51,32 @@ struct Brush {
     }
     /// The target velocity, each component limited to `most` [m/s].
     Vec<D> target(const Vec<D>& x, const Vec<D>& most) const {
-        Vec<D> u = kind == HandKind::pull ? speed / radius * (centre - x) : velocity;
+        Vec<D> u = kind == BrushKind::pull ? speed / radius * (centre - x) : velocity;
         for (int a = 0; a < D; ++a) u[a] = std::clamp(u[a], -most[a], most[a]);
         return u;
     }
 };
 
-struct Hand {
-    std::vector<HandKey> keys;  // in the order of time
-    real rate = 0;              // [1/s]
-    Vec<3> impulse{};           // added to the fluid since the start, including the momentum of liquid that was poured or drained [kg m/s]
-    real mass = 0;              // poured minus drained [kg]
-    real heat = 0;              // added to the fluid since the start [J]
-    std::array<bool, hand_kinds.size()> can{};  // the kinds that the solver supports in this scene
+struct BrushForcing {
+    std::vector<BrushKeyframe> keys;  // in the order of time
+    real rate = 0;                    // [1/s]
+    Vec<3> impulse{};  // added to the fluid since the start, including the momentum of liquid that was poured or drained [kg m/s]
+    real mass = 0;     // poured minus drained [kg]
+    real heat = 0;     // added to the fluid since the start [J]
+    std::array<bool, brush_kinds.size()> can{};  // the kinds that the solver supports in this scene
 
-    void allow(std::initializer_list<HandKind> kinds) {
-        for (const HandKind kind : kinds) can[static_cast<std::size_t>(kind)] = true;
+    void allow(std::initializer_list<BrushKind> kinds) {
+        for (const BrushKind kind : kinds) can[static_cast<std::size_t>(kind)] = true;
     }
-    bool has(HandKind kind) const { return can[static_cast<std::size_t>(kind)]; }
+    bool has(BrushKind kind) const { return can[static_cast<std::size_t>(kind)]; }
 
     /// The brush in the step that begins at t.
     template <int D>
     Brush<D> at(real t) const {
-        const auto next = std::upper_bound(keys.begin(), keys.end(), t, [](real time, const HandKey& key) { return time < key.time; });
+        const auto next =
+            std::upper_bound(keys.begin(), keys.end(), t, [](real time, const BrushKeyframe& key) { return time < key.time; });
         if (next == keys.begin()) return {};
-        const HandKey& key = *std::prev(next);
+        const BrushKeyframe& key = *std::prev(next);
         Brush<D> brush{key.kind, {}, {}, key.radius, key.speed, key.temperature, key.body};
         for (int a = 0; a < D; ++a) brush.centre[a] = key.centre[a], brush.velocity[a] = key.velocity[a];
         return brush;
