@@ -8,7 +8,7 @@ int exit_interrupted();
 
 /// From here on SIGINT and SIGTERM are counted; a file that grows past a limit is an error of its write, not a signal. Over ranks they
 /// count twice, since mpirun gives its processes little time after it was interrupted itself; SIGUSR1 counts once.
-void catch_interrupts(bool over_ranks = false);
+void catch_interrupts(bool in_parallel = false);
 int interruptions();
 /// What was to be written is written: from here on they end the program.
 void release_interrupts();

@@ -16,14 +16,14 @@
 #include "output/run_log.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "rigid/remark.hpp"
-#include "sim/foretold.hpp"
 #include "sim/loop.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
 #include "sim/run_id.hpp"
 #include "sim/shares.hpp"
 #include "sim/solid_cells.hpp"
-#include "validation/cost/over_ranks.hpp"
+#include "validation/cost/parallel_estimate.hpp"
 #include "validation/harness/generic_metrics.hpp"
 #include "validation/report/command.hpp"
 
@@ -97,8 +97,8 @@ std::string explain_ranks(const Simulation& simulation) {
 
 /// The same of ranks that there may be.
 std::string explain_planned_ranks(const scene::Scene& scene, int ranks) {
-    const validation::Forecast f = validation::forecast(scene);
-    return validation::over_ranks_text(validation::forecast_over_ranks(scene, f, ranks), f, scene);
+    const validation::CostEstimate f = validation::estimate_cost(scene);
+    return validation::parallel_estimate_text(validation::estimate_in_parallel(scene, f, ranks), f, scene);
 }
 
 /// What the system says of this process's memory [bytes]; 0 where it does not.

@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/frames.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ std::string check_space(const Simulation& simulation, const std::filesystem::pat
     const scene::Scene& scene = simulation.scene();
     if (!output::can_write_frames()) return "";
     const auto parts = simulation.solver().show_in_parts();
-    const auto output = sim::foretell_output(scene, simulation.fields());
+    const auto output = sim::estimate_output(scene, simulation.fields());
     const double room = room_in(folder), to_come = output.frames - static_cast<double>(simulation.frame());
     const double bytes = std::max(0.0, to_come) * output.bytes_of_frame;
     const bool compressed = scene.text("output.compression") != "none";

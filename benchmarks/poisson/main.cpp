@@ -193,7 +193,7 @@ void run_case(const std::string& name, int n, int threads, const Choice& choice)
     std::vector<std::string> solvers = choice.solvers;
     if (slabs().several()) {
         const auto shared = [](const std::string& solver) { return solver == "multigrid" || solver.starts_with("petsc"); };
-        if (!std::all_of(solvers.begin(), solvers.end(), shared)) throw BadInput("over ranks: multigrid and PETSc's methods alone");
+        if (!std::all_of(solvers.begin(), solvers.end(), shared)) throw BadInput("in parallel: multigrid and PETSc's methods alone");
         if (solvers.empty()) solvers = {"multigrid"};
     }
     if (solvers.empty()) {

@@ -80,7 +80,7 @@ template <class F>
 const std::vector<real>& parts_of_planes(int planes, F&& f) {
     auto& part = reduction_scratch(static_cast<std::size_t>(planes));
     for_each_plane(0, planes, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
-    if (over_ranks()) slabs().gather(*own_share.cut, {part.data(), sizeof(real), planes});
+    if (is_distributed()) slabs().gather(*own_share.cut, {part.data(), sizeof(real), planes});
     return part;
 }
 }  // namespace detail
@@ -104,14 +104,14 @@ Planes planes_of(Grid<T, D>& q) {
 /// Halo exchange: fills the `deep` ghost planes on both sides of this rank's subdomain.
 template <class T, int D>
 void refresh(Grid<T, D>& q, bool ring, int deep = 1) {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     q.store().open(deep, ring);
     slabs().refresh(*detail::own_share.cut, planes_of(q), deep, ring);
 }
 /// All-gather: every rank receives all planes.
 template <class T, int D>
 void gather(Grid<T, D>& q) {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     q.store().open_all();
     slabs().gather(*detail::own_share.cut, planes_of(q));
 }

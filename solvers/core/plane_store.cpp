@@ -62,7 +62,7 @@ std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, i
 }
 
 std::vector<char> planes_near(int count, int deep, bool ring) {
-    if (!over_ranks()) return {};
+    if (!is_distributed()) return {};
     const Cut& cut = *detail::own_share.cut;
     const int n = cut.planes(), rank = slabs().rank();
     std::vector<char> near(static_cast<std::size_t>(count), 0);

@@ -202,14 +202,14 @@ private:
 inline void set_reach(int planes) { detail::own_share.reach = planes; }
 
 /// Returns whether loops over planes are distributed over several ranks.
-inline bool over_ranks() { return detail::own_share.cut != nullptr; }
+inline bool is_distributed() { return detail::own_share.cut != nullptr; }
 
 /// Returns whether the current loop range includes this plane.
 inline bool is_own_plane(int plane) { return plane >= detail::own_share.begin && plane < detail::own_share.end; }
 
 /// Sum of a value over the ranks; in one process, or for replicated work, the value itself.
 inline std::int64_t sum_of_ranks(std::int64_t own) {
-    if (!over_ranks()) return own;
+    if (!is_distributed()) return own;
     const std::vector<std::int64_t> list = of_ranks(own);
     return std::accumulate(list.begin(), list.end(), std::int64_t{0});
 }

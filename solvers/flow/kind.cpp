@@ -37,7 +37,7 @@ Key sides_key() {
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
-void over_ranks(const scene::Scene& scene) {
+void check_parallel(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (Heat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting of a substance is");
     scene::refuse_brush(scene);
@@ -59,7 +59,7 @@ scene::SolverKind kind() {
     scene::SolverKind mac{schema,
                           make_without_surface<FlowSolver>,
                           {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
-                          over_ranks};
+                          check_parallel};
     mac.holds_own_part = staggered::holds_own_planes;
     mac.sends = traffic_of_step;
     mac.by_all = staggered::pressure_by_all;

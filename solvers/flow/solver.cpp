@@ -87,7 +87,7 @@ real ambient_temperature(const scene::Scene& scene) {
 /// Evaluates f() on the rank that owns one end of the partitioned axis and broadcasts the result.
 template <class F>
 auto of_rank_at(int end, F&& f) -> decltype(f()) {
-    if (!over_ranks()) return f();
+    if (!is_distributed()) return f();
     const int owner = end == 0 ? 0 : slabs().ranks() - 1;
     decltype(f()) own{};
     if (slabs().rank() == owner) {
@@ -134,7 +134,7 @@ int moments_of(std::size_t cells) { return static_cast<int>(std::clamp<std::size
 /// Rejects moving solids that change the volume of enclosed fluid. Tested from t = 0 to the end; afterwards the solids are at t = 0 again.
 template <int D>
 void refuse_squeezing(const scene::Scene& scene, MacState<D>& s, SolidPlacement<D>& solids) {
-    if (over_ranks()) return;  // the step tests it there
+    if (is_distributed()) return;  // the step tests it there
     const int moments = moments_of(s.cells.size());
     const real end = scene.number("time.end");
     for (int k = 0; k <= moments; ++k) {
@@ -278,7 +278,7 @@ void FlowSolver<D>::extend_fields() {
 /// Forces on a face depend on the cells on both sides.
 template <int D>
 void FlowSolver<D>::refresh_fields() {
-    if (!over_ranks() || state_.fields.empty()) return;
+    if (!is_distributed() || state_.fields.empty()) return;
     shared_.clear();
     for (auto& field : state_.fields) shared_.push_back(planes_of(field.values));
     slabs().refresh(held_.cut(), shared_, 1, state_.sides.periodic(D - 1));

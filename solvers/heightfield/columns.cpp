@@ -86,7 +86,7 @@ void Columns::make_stiffness() {
     const Plane& plane = state_.plane;
     const Field& depth = state_.h;
     const auto pull = [&](real a, real b, real d) { return a > 0 && b > 0 ? state_.g * 0.5 * (a + b) / (d * d) : 0; };
-    const real first = over_ranks() ? of_ranks(slabs().rank() == 0 ? depth[0] : 0)[0] : depth[0];
+    const real first = is_distributed() ? of_ranks(slabs().rank() == 0 ? depth[0] : 0)[0] : depth[0];
     const real uneven = sum_of_columns(plane, [&](std::size_t c) { return std::abs(depth[c] - first) <= 1e-12 * first ? 0.0 : 1.0; });
     k_.uniform = floats_.empty() && uneven == 0;
     k_.along_x = pull(first, first, plane.dx), k_.along_z = plane.dim == 3 ? pull(first, first, plane.dz) : 0;
@@ -170,7 +170,7 @@ void Columns::outflow_at_open_sides(real dt) {
         for (std::size_t i = 0; i < taken_[2 + end].size(); ++i)
             taken_[2 + end][i] = slow(static_cast<int>(i), first ? 0 : plane.nz - 1, plane.dz);
     }
-    if (over_ranks()) gather_taken();
+    if (is_distributed()) gather_taken();
     real taken = 0;
     for (const std::size_t side : {0, 2, 1, 3})  // x_min, z_min, x_max, z_max
         for (const real change : taken_[side]) taken += change;

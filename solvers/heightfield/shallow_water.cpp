@@ -89,7 +89,7 @@ void ShallowWater::move_water(real dt) {
 
 /// In parallel, fills the ghost rows: the two reconstructions of a face read two.
 void ShallowWater::bring_beside(const std::array<Field*, 3>& water, int deep) const {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     const std::array<Planes, 3> all{planes_of(*water[0]), planes_of(*water[1]), planes_of(*water[2])};
     slabs().refresh(held_.cut(), all, deep, held_.ring());
 }
@@ -109,7 +109,7 @@ void ShallowWater::bring() const {
 }
 
 void ShallowWater::take_reports(real weight) {
-    if (over_ranks()) slabs().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
+    if (is_distributed()) slabs().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
     volume_ = 0, rate_ = 0;
     for (const RowReport& r : reports_) {
         volume_ += r.volume * state_.plane.dz;

@@ -33,7 +33,7 @@ struct SolverKind {
     std::function<std::unique_ptr<Solver>(const Scene&)> make;
     PlainStep plain{};
     /// Rejects, at its key, scenes that are not supported in parallel. Empty: the solver runs in one process only.
-    std::function<void(const Scene&)> over_ranks{};
+    std::function<void(const Scene&)> check_parallel{};
     /// What is distributed over the ranks.
     Shared shared = Shared::by_planes;
     /// The replicated work of a step of this scene with this partition, in a few words; an empty text, or no function: none.

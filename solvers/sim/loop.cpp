@@ -1,7 +1,7 @@
 #include "sim/loop.hpp"
 
 #include "core/slabs.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/run_id.hpp"
 
 #include <chrono>

@@ -50,16 +50,16 @@ int planes_of(const scene::Scene& scene) { return static_cast<int>(scene.root().
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
     if (ranks == 1) return;
     const auto& kind = kind_named(scene.solver(), kinds);
-    if (!kind.over_ranks) {
+    if (!kind.check_parallel) {
         std::string able;
         for (const auto& other : kinds)
-            if (other.over_ranks) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
+            if (other.check_parallel) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
         scene.refuse(
             "solver",
             "solver " + scene::quote(scene.solver()) + " runs in one process only, and the number of ranks is " + std::to_string(ranks),
             "solvers that run in parallel: " + able);
     }
-    kind.over_ranks(scene);
+    kind.check_parallel(scene);
     const int planes = planes_of(scene);
     if (kind.shared == scene::Shared::by_planes && planes < ranks && !(kind.cut && kind.cut(scene, ranks).empty()))
         scene.refuse("grid.cells",

@@ -10,7 +10,7 @@
 #include "sim/asked_times.hpp"
 #include "sim/extremes.hpp"
 #include "sim/finite.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
 #include "sim/room.hpp"
 #include "sim/shares.hpp"

@@ -189,7 +189,7 @@ void fill_ends(Padded<D>& q, const Boundary<D>& boundary) {
 
 template <int D>
 void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep) {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     q.open(depth(deep), repeats(boundary));
     const Planes planes = q.planes();
     refresh_all(std::span(&planes, 1), repeats(boundary), deep);
@@ -197,7 +197,7 @@ void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep) {
 
 template <int D>
 void refresh(const std::vector<WithBoundary<D>>& list, int deep) {
-    if (!over_ranks() || list.empty()) return;
+    if (!is_distributed() || list.empty()) return;
     thread_local std::vector<Planes> planes;
     planes.clear();
     for (const auto& one : list) {

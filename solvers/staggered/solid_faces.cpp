@@ -392,7 +392,7 @@ real SolidPlacement<D>::find_rate(const MacState<D>& s) const {
                 for (int i = 0; i < count; ++i) most = std::max(most, std::abs(v[i])), poison += v[i] - v[i];
                 fastest = larger_or_nan(fastest, most + poison);
             });
-        if (over_ranks())
+        if (is_distributed())
             for (const real of_rank : of_ranks(fastest)) fastest = larger_or_nan(fastest, of_rank);
         rate = std::max(rate, fastest / s.u.h[a]);
     }

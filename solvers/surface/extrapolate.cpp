@@ -210,7 +210,7 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
 template <int D>
 template <class F>
 void Extrapolation<D>::for_each_own(F&& f) {
-    if (!over_ranks()) return parallel_for(0, static_cast<int>(front_.size()), f);
+    if (!is_distributed()) return parallel_for(0, static_cast<int>(front_.size()), f);
     own_.clear();
     for (std::size_t i = 0; i < front_.size(); ++i)
         if (is_own_plane(front_[i][D - 1])) own_.push_back(static_cast<int>(i));
@@ -224,7 +224,7 @@ void Extrapolation<D>::bring_marks(FaceMarks<D>& marks, int layers) {
     const int deep = layers + slope_reach;
     const bool ring = frame_.periodic(D - 1);
     for (std::size_t last = 0; last < 2; ++last) near_of_[last] = planes_near(frame_.cells[D - 1] + static_cast<int>(last), deep, ring);
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     std::array<Planes, D> all;
     for (std::size_t a = 0; a < D; ++a) {
         marks[a].store().open(deep + 1, ring);
@@ -246,7 +246,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
         front_.clear();
         start_front(mark, a, surface, near);
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
-        for (int layer = 1; layer <= layers && (over_ranks() || !front_.empty()); ++layer) {  // another rank may have a front
+        for (int layer = 1; layer <= layers && (is_distributed() || !front_.empty()); ++layer) {  // another rank may have a front
             if (layer > 1) refresh(u[a], frame_.periodic(D - 1), layer == 2 ? behind : 1);
             resize_scratch(value_, front_.size());
             for_each_own([&](int i) {

@@ -123,7 +123,7 @@ struct Extent {
 /// Halo exchange of `deep` ghost planes of faces, all components in one message per neighbour. Across a periodic boundary face n is face 0.
 template <int D>
 void refresh_faces(std::array<Grid<real, D>, D>& u, const Frame<D>& frame, int deep) {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     std::array<Planes, D> all;
     for (std::size_t a = 0; a < D; ++a) {
         u[a].store().open(deep, frame.periodic(D - 1));

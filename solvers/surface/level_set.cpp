@@ -151,7 +151,7 @@ static constexpr std::uint8_t continued = 254;  // not a layer of the band
 template <int D>
 void LevelSet<D>::continue_into_solids() {
     if (skin_.empty()) return;
-    if (over_ranks()) return skin_of_ranks_.continue_into(phi, skin_);
+    if (is_distributed()) return skin_of_ranks_.continue_into(phi, skin_);
     for (const Index<D>& I : skin_) layer_(I) = 0;
     std::size_t first = 0;
     for (const std::size_t last : skin_end_) {
@@ -183,7 +183,7 @@ void LevelSet<D>::continue_layer(std::size_t first, std::size_t last) {
 
 template <int D>
 void LevelSet<D>::find_own() {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     own_.clear();
     for (std::size_t i = 0; i < band_.size(); ++i)
         if (is_own_plane(band_[i][D - 1])) own_.push_back(static_cast<int>(i));

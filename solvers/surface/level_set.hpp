@@ -153,7 +153,7 @@ private:
 template <int D>
 template <class F>
 void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const {
-    if (!over_ranks()) return parallel_for(static_cast<int>(first), static_cast<int>(last), f);
+    if (!is_distributed()) return parallel_for(static_cast<int>(first), static_cast<int>(last), f);
     const auto place = [&](std::size_t at) { return std::lower_bound(own_.begin(), own_.end(), static_cast<int>(at)) - own_.begin(); };
     parallel_for(static_cast<int>(place(first)), static_cast<int>(place(last)), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }

@@ -73,7 +73,7 @@ Key scheme_keys() {
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
-void over_ranks(const scene::Scene& scene) { scene::refuse_brush(scene); }
+void check_parallel(const scene::Scene& scene) { scene::refuse_brush(scene); }
 
 }  // namespace
 
@@ -97,7 +97,7 @@ scene::SolverKind kind() {
         {{"velocity", "pressure", "level_set", "cell_height"},
          {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
          "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-        over_ranks,
+        check_parallel,
         scene::Shared::by_planes,
         [](const scene::Scene&, const Cut&) {
             return "the levels of the pressure of fewer than 20,000 unknowns, extrapolation of the level set into solids";

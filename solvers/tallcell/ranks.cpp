@@ -19,7 +19,7 @@ bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty()
 template <int D>
 void TallCells<D>::bring_faces(real dt) {
     whole_ = held_.cut().empty();
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
     const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];

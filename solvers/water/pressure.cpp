@@ -52,7 +52,7 @@ void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std:
 /// In parallel, exchanges the flags of liquid cells at the subdomain boundaries.
 template <int D>
 void SurfacePressure<D>::bring_liquid() {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     const std::array<Planes, 2> both{planes_of(A_.cells), planes_of(liquid_)};
     slabs().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));
 }
@@ -177,7 +177,7 @@ void SurfacePressure<D>::apply_drag(const MacState<D>& state) {
 /// In parallel: distributed where the method supports it, otherwise replicated on each rank.
 template <int D>
 const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
-    if (!over_ranks()) return solver_->solve(state.p, b_);
+    if (!is_distributed()) return solver_->solve(state.p, b_);
     if (solver_->shares_planes()) {
         const poisson::Report& report = solver_->solve(state.p, b_);
         refresh(state.p, frame_.periodic(D - 1));

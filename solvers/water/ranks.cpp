@@ -10,7 +10,7 @@ namespace weir::water {
 template <int D>
 void Water<D>::refresh_velocity(real dt) {
     whole_ = held_.cut().empty(), markers_whole_ = false;
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
     real fastest = max_magnitude(state_.u[D - 1]);
@@ -34,7 +34,7 @@ void Water<D>::fill_solid_ghosts() {
 /// Removes markers beyond open sides; in parallel also migrates markers. Returns how many there were, and how many have left.
 template <int D>
 std::array<std::int64_t, 2> Water<D>::migrate_markers() {
-    if (!over_ranks()) {
+    if (!is_distributed()) {
         const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
         return {static_cast<std::int64_t>(all), static_cast<std::int64_t>(departed)};
     }

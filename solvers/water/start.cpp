@@ -159,10 +159,11 @@ template <int D>
 void Water<D>::seed_markers() {
     const std::size_t cells = product(frame_.cells);
     refresh_faces(state_.u, frame_, 3);  // ghost markers of one plane read the faces around them
-    if (!over_ranks()) markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
+    if (!is_distributed())
+        markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);
-        if (over_ranks() && !markers_.holds(frame_, held_.cut(), slabs().rank(), I[D - 1])) continue;
+        if (is_distributed() && !markers_.holds(frame_, held_.cut(), slabs().rank(), I[D - 1])) continue;
         if (surface_.phi(I) > norm(frame_.h)) continue;
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);

@@ -147,11 +147,11 @@ TEST("run.json times each effect by its name") {
 }
 
 TEST("weir cost --plan tells what a scene will cost and writes nothing; weir plan chooses, or says that nothing reaches it") {
-    const auto forecast = weir_says({"cost", "--plan", smoke});
-    EXPECT_EQ(forecast.code, 0) << forecast.text;
+    const auto estimate = weir_says({"cost", "--plan", smoke});
+    EXPECT_EQ(estimate.code, 0) << estimate.text;
     for (const char* what :
          {"temperature [K]", "bytes per cell", "frames", " steps", "effect buoyancy", "all", "ns per cell", "rates measured now"})
-        EXPECT_NE(forecast.text.find(what), std::string::npos) << what << "\n" << forecast.text;
+        EXPECT_NE(estimate.text.find(what), std::string::npos) << what << "\n" << estimate.text;
     const std::string tables = std::string(WEIR_SOURCE_DIR) + "/results/cost", study = std::string(WEIR_SOURCE_DIR) + "/cases/taylor_green";
     const auto chosen = weir_says({"plan", study, "--tables", tables, "--as-measured", "--error", "20%", "--budget", "10s"});
     EXPECT_EQ(chosen.code, 0) << chosen.text;

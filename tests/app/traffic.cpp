@@ -1,4 +1,4 @@
-// What ranks send, told before a run by the formulas of the solvers (SolverKind::sends), against what runs over ranks have counted: in the
+// What ranks send, told before a run by the formulas of the solvers (SolverKind::sends), against what parallel runs have counted: in the
 // steps by which one run is longer than another, so that neither beginning nor end counts. (Frames are not compressed: as many bytes at any
 // time.)
 #include "app/process.hpp"
@@ -7,7 +7,7 @@
 #include "sim/shares.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
-#include "validation/cost/over_ranks.hpp"
+#include "validation/cost/parallel_estimate.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -282,25 +282,25 @@ std::pair<int, std::string> said(std::vector<std::string> arguments) {
 
 }  // namespace
 
-// The whole is foretold within a tenth. Of a rank's part of mac, the pressure's levels of fewer than 20,000 cells are whole, less than a
+// The whole is estimated within a tenth. Of a rank's part of mac, the pressure's levels of fewer than 20,000 cells are whole, less than a
 // tenth of the half or quarter that it holds. In mac_water, of liquid that stands as high on all planes, the band and the markers reach
 // beyond the 5 or 9 planes near cuts that are counted: 11 planes to either side of 40 for bytes, one for markers. Of a height field and of
-// waves a rank reads fewer, 2 rows or 1 beyond a cut, less than a tenth of 64; a sea that is summed over ranks has the messages of its
+// waves a rank reads fewer, 2 rows or 1 beyond a cut, less than a tenth of 64; a sea that is summed in parallel has the messages of its
 // transposition beside that, 2 complex numbers for each wave, where it has 5 and 12 reals for the two points that make one. Of tall cells
 // it has 2 lines of columns beyond a cut where the lattice has 4 planes and bytes 11, and whole levels of the pressure as mac.
 TEST(
-    "what each rank of mac will hold is foretold within a fifth, and of mac_water within a third, of tallcell, heightfield and waves "
+    "what each rank of mac will hold is estimated within a fifth, and of mac_water within a third, of tallcell, heightfield and waves "
     "within a fifth") {
     if (const std::string why = no_ranks(); !why.empty()) GTEST_SKIP() << why;
     const auto compare = [](const std::string& text, double end, double wrong) {
         const Runs runs(text);
         const auto scene = runs.scene();
-        validation::Forecast f;
-        f.held = sim::foretell(scene, sim::registry());
+        validation::CostEstimate f;
+        f.held = sim::estimate_memory(scene, sim::registry());
         f.count = 1, f.ms = 1;
         for (const int ranks : {2, 4}) {
             const Run run = runs.run(ranks, end);
-            const validation::OverRanks told = validation::forecast_over_ranks(scene, f, ranks, validation::Link{1e-6, 1e9, ""});
+            const validation::ParallelEstimate told = validation::estimate_in_parallel(scene, f, ranks, validation::Link{1e-6, 1e9, ""});
             for (int rank = 0; rank < ranks; ++rank)
                 EXPECT_NEAR(told.bytes[static_cast<std::size_t>(rank)] / static_cast<double>(run.sent("solver_bytes", rank)), 1, wrong)
                     << "rank " << rank << " of " << ranks;

@@ -123,7 +123,7 @@ private:
 };
 
 /// body() as each of `count` ranks, each in a process of its own with one thread; what it expects in vain fails the test.
-inline void over_ranks(int count, const std::function<void()>& body, bool poisons = false) {
+inline void on_ranks(int count, const std::function<void()>& body, bool poisons = false) {
     const auto n = static_cast<std::size_t>(count);
     std::vector<std::vector<int>> sockets(n, std::vector<int>(n, -1));
     for (std::size_t i = 0; i < n; ++i)

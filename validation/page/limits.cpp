@@ -77,7 +77,7 @@ std::string reasons(const std::vector<json>& studies) {
     return "<details><summary>Difficulty of each axis</summary><ul class=\"reasons\">" + list + "</ul></details>\n";
 }
 
-/// Limits that theory has a word on, one line an axis: what was found, over all methods, beside what was foretold.
+/// Limits that theory has a word on, one line an axis: what was found, over all methods, beside the estimate.
 std::string beside_theory(const std::vector<json>& studies) {
     struct Found {
         double least, most, theory;

@@ -78,7 +78,7 @@ TEST("one rank owns everything, and an empty cut changes no loop") {
     EXPECT_FALSE(slabs().several());
     const Cut none = cut_of(10, slabs().ranks());
     const OwnPlanes mine(none);
-    EXPECT_FALSE(over_ranks());
+    EXPECT_FALSE(is_distributed());
     int visited = 0;
     const int before = set_threads(1);
     for_each_cell(Index<2>{{3, 10}}, [&](const Index<2>&) { ++visited; });
@@ -101,7 +101,7 @@ public:
     }
 };
 
-TEST("over ranks a loop does its own planes, and a sum adds everybody's in the order of the planes") {
+TEST("in parallel a loop does its own planes, and a sum adds everybody's in the order of the planes") {
     set_slabs(std::make_unique<Echo>());
     {
         const Cut cut = cut_of(16, 2);
@@ -112,11 +112,11 @@ TEST("over ranks a loop does its own planes, and a sum adds everybody's in the o
         EXPECT_EQ(plane_sum(16, [](int plane) { return real(plane); }), 120);
         EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 7);  // of the other's, which echo their numbers
         const AllPlanes all;
-        EXPECT_FALSE(over_ranks());
+        EXPECT_FALSE(is_distributed());
         EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 0);
     }
     set_slabs(nullptr);
-    EXPECT_FALSE(over_ranks());
+    EXPECT_FALSE(is_distributed());
 }
 
 }  // namespace

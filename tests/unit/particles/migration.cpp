@@ -122,7 +122,7 @@ TEST(
     for (const int dim : {2, 3})
         for (const bool repeats : {false, true})
             for (const int ranks : {2, 3, 5})
-                test::over_ranks(
+                test::on_ranks(
                     ranks,
                     [&] {
                         Cloud cloud(dim, repeats);
@@ -143,7 +143,7 @@ TEST(
 }
 
 TEST("a particle goes to a neighbour below or above, to a rank that is none, and through a side that repeats, and nobody else moves") {
-    test::over_ranks(
+    test::on_ranks(
         4,
         [] {
             Cloud cloud(2, true);
@@ -188,7 +188,7 @@ TEST("a particle goes to a neighbour below or above, to a rank that is none, and
 }
 
 TEST("a particle near a side that repeats is shown to the rank at the other end") {
-    test::over_ranks(
+    test::on_ranks(
         4,
         [] {
             Cloud cloud(3, true);
@@ -204,7 +204,7 @@ TEST("a particle near a side that repeats is shown to the rank at the other end"
 }
 
 TEST("a rank whose cells have run empty owns nothing and holds what it reads, and takes part again when particles come back") {
-    test::over_ranks(
+    test::on_ranks(
         4,
         [] {
             Cloud cloud(2, false);
@@ -227,7 +227,7 @@ TEST("a rank whose cells have run empty owns nothing and holds what it reads, an
 }
 
 TEST("fewer particles than ranks, and all in one cell") {
-    test::over_ranks(
+    test::on_ranks(
         5,
         [] {
             for (const bool repeats : {false, true}) {
@@ -247,7 +247,7 @@ TEST("fewer particles than ranks, and all in one cell") {
 TEST(
     "cuts stay until a rank has more than its share by more than allowed; new ones leave no rank more than its share and a cell's "
     "particles") {
-    test::over_ranks(4, [] {
+    test::on_ranks(4, [] {
         Cloud cloud(2, false);
         cloud.scatter(4000, 6);
         State state(cloud, [](int i) { return i / 1000; });
@@ -273,7 +273,7 @@ TEST(
 }
 
 TEST("a position that is not finite on one rank fails all of them") {
-    test::over_ranks(3, [] {
+    test::on_ranks(3, [] {
         Cloud cloud(2, false);
         cloud.scatter(90, 7);
         State state(cloud, [](int i) { return i / 30; });

@@ -53,7 +53,7 @@ void expect_together(const Liquid& liquid, const Options& options, const scene::
     const auto count = static_cast<std::size_t>(liquid.count());
     const SurfaceMesh whole = Reconstruction(options, scene).make(fields(0, count), 0);
     EXPECT_GT(whole.points.size(), 100U);
-    over_ranks(ranks, [&] {
+    on_ranks(ranks, [&] {
         const auto rank = static_cast<std::size_t>(slabs().rank()), others = static_cast<std::size_t>(ranks) - 1;
         FieldSet part = rank == 0 ? fields(0, 0) : fields(count * (rank - 1) / others, count * rank / others);
         part.particles_in_parts = true;
@@ -229,7 +229,7 @@ TEST_IN_2D_AND_3D("water on a grid: from its level set and from its markers, of 
                 EXPECT_GT(whole.points.size(), 100U);
                 EXPECT_EQ(whole.velocity.size(), whole.points.size());
                 const Cut cut{at};
-                over_ranks(
+                on_ranks(
                     cut.ranks(),
                     [&] {
                         Water own = water;
@@ -267,7 +267,7 @@ TEST_IN_2D_AND_3D("the surface of markers without a velocity has that of the gri
 
 TEST("no liquid at all, and a position that is not a number: all ranks say the same") {
     const Liquid none = spray(10, 0, 1);
-    over_ranks(3, [&] {
+    on_ranks(3, [&] {
         FieldSet fields = none.fields();
         fields.particles_in_parts = true;
         Reconstruction maker(usual(Method::density), scene_of(10));

@@ -1,4 +1,4 @@
-#include "validation/cost/forecast.hpp"
+#include "validation/cost/cost_estimate.hpp"
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -144,11 +144,11 @@ Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKi
     return r;
 }
 
-Forecast forecast(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
-    Forecast f{.solver = scene.solver(), .dim = scene.dim(), .cells = cells_text(scene), .held = sim::foretell(scene, kinds)};
+CostEstimate estimate_cost(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+    CostEstimate f{.solver = scene.solver(), .dim = scene.dim(), .cells = cells_text(scene), .held = sim::estimate_memory(scene, kinds)};
     f.particles = f.held.particle_solver;
     f.count = f.particles ? f.held.particles : f.held.cells;
-    f.output = sim::foretell_output(scene, f.held);
+    f.output = sim::estimate_output(scene, f.held);
     f.measured = measure_copies(scene, f.count, kinds);
     const auto& at = f.measured;
     const Rates &fine = at.front(), &coarse = at.back();
@@ -169,7 +169,7 @@ Forecast forecast(const scene::Scene& scene, const std::vector<scene::SolverKind
 namespace {
 
 /// A scene that prescribes its step takes so many; else as many as between the longest and the shortest steps that the small runs took.
-std::string steps_text(const Forecast& f, const scene::Scene& scene) {
+std::string steps_text(const CostEstimate& f, const scene::Scene& scene) {
     const double end = scene.number("time.end"), longest = scene.root().number_or("time.max_dt", infinity);
     const auto steps = [&](double dt) { return std::ceil(end / std::min(dt, longest) * (1 - 1e-9)); };
     const bool fixed = scene.has("time.dt");
@@ -182,14 +182,14 @@ std::string steps_text(const Forecast& f, const scene::Scene& scene) {
 
 }  // namespace
 
-std::string forecast_text(const Forecast& f, const scene::Scene& scene) {
+std::string cost_estimate_text(const CostEstimate& f, const scene::Scene& scene) {
     const auto megabytes = [](double bytes) { return fmt::format("{:.4g} MB", bytes / 1e6); };
     const char* unit = f.particles ? "particle" : "cell";
     std::string s = fmt::format("{}, {}D, {} cells", f.solver, f.dim, f.cells);
     if (f.particles) s += fmt::format(", {:.0f} particles", f.count);
     s += "\nfields\n";
     static constexpr const char* places[] = {"cells", "faces", "particles"};
-    for (const sim::ForetoldField& field : f.held.fields)
+    for (const sim::EstimatedField& field : f.held.fields)
         s += fmt::format("  {:22} {:9} {:>10}\n", field.unit.empty() ? field.name : field.name + " [" + field.unit + "]",
                          places[static_cast<std::size_t>(field.where)], megabytes(field.values * sizeof(real)));
     s += fmt::format(

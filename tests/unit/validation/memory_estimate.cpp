@@ -1,7 +1,7 @@
-// What a scene will hold in memory and write, foretold from small copies of it, against what it then holds and writes. For every solver
+// What a scene will hold in memory and write, estimated from small copies of it, against what it then holds and writes. For every solver
 // that is registered, with none of its effects and with all of them, in boxes of several proportions; for each pressure method; and for
 // liquid that a copy is too coarse to see.
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -39,12 +39,12 @@ scene::Scene resized(const scene::Scene& scene, const std::vector<int>& cells, s
     return scene::parse(scene.source(), scene.file(), sim::schemas(), overrides);
 }
 
-void expect_foretold(const scene::Scene& scene, const std::string& name) {
-    const sim::Foretold f = sim::foretell(scene, sim::registry());
+void expect_estimate(const scene::Scene& scene, const std::string& name) {
+    const sim::MemoryEstimate f = sim::estimate_memory(scene, sim::registry());
     Simulation run(scene);
     run.step();
     const auto bytes = static_cast<double>(run.solver().bytes());
-    std::printf("%-44s %6.1f MB foretold %+5.1f%%\n", name.c_str(), bytes / 1e6, 100 * (f.bytes / bytes - 1));
+    std::printf("%-44s %6.1f MB estimated %+5.1f%%\n", name.c_str(), bytes / 1e6, 100 * (f.bytes / bytes - 1));
     const bool columns =
         sim::kind_named(scene.solver(), sim::registry()).schema.columns;  // one cell along y: these are small enough to be built
     EXPECT_TRUE(columns || !f.exact) << name << " is built itself: it proves nothing";
@@ -59,7 +59,7 @@ std::vector<std::string> effects_of(const scene::SolverKind& kind) {
 
 }  // namespace
 
-TEST_IN_2D_AND_3D("memory is foretold within a tenth for every solver, plain and with all its effects, whatever the box's proportions") {
+TEST_IN_2D_AND_3D("memory is estimated within a tenth for every solver, plain and with all its effects, whatever the box's proportions") {
     const std::vector<std::vector<int>> boxes =
         D == 2 ? std::vector<std::vector<int>>{{640, 640}, {1000, 217}} : std::vector<std::vector<int>>{{80, 80, 80}, {60, 131, 40}};
     for (const auto& kind : sim::registry()) {
@@ -68,13 +68,13 @@ TEST_IN_2D_AND_3D("memory is foretold within a tenth for every solver, plain and
             for (const auto& box : boxes) {
                 const auto scene = with_effects ? validation::scene_with(kind, D, 8, effects_of(kind), validation::negligible)
                                                 : validation::plain_scene(kind, D, 8);
-                expect_foretold(resized(scene, box), kind.schema.name + (with_effects ? ", all effects, " : ", plain, ") +
+                expect_estimate(resized(scene, box), kind.schema.name + (with_effects ? ", all effects, " : ", plain, ") +
                                                          std::to_string(D) + "D " + std::to_string(box[0]) + " across");
             }
     }
 }
 
-TEST("memory is foretold within a tenth for every pressure method, and for the studies' own solvers") {
+TEST("memory is estimated within a tenth for every pressure method, and for the studies' own solvers") {
     const std::string cases = std::string(WEIR_SOURCE_DIR) + "/cases/";
     const auto read = [&](const std::string& scene, std::vector<scene::Override> more) {
         return scene::read(cases + scene, sim::schemas(), more);
@@ -82,19 +82,19 @@ TEST("memory is foretold within a tenth for every pressure method, and for the s
     std::vector<std::string> methods = {"multigrid", "cg_mic0", "cg_jacobi", "cg", "eigen_iccg", "cholmod", "red_black", "jacobi"};
     if (poisson::has_petsc()) methods.insert(methods.end(), {"petsc_gamg", "petsc_boomeramg", "petsc_icc"});
     for (const std::string& method : methods)
-        expect_foretold(read("smoke_obstacle_2d", {{"grid.cells", "[384, 576]"},
+        expect_estimate(read("smoke_obstacle_2d", {{"grid.cells", "[384, 576]"},
                                                    {"time.max_dt", "1e-4"},
                                                    {"scheme.poisson.fixed", "true"},
                                                    {"scheme.poisson.max_iterations", "2"},
                                                    {"scheme.poisson.method", '"' + method + '"'}}),
                         "smoke_obstacle_2d, " + method);
-    expect_foretold(read("zalesak", {{"grid.cells", "[500, 500]"}, {"time.dt", "1e-4"}}), "transport");
-    expect_foretold(read("poisson_mms", {{"grid.cells", "[500, 500]"}}), "poisson");
-    expect_foretold(read("phase_diagram", {{"grid.cells", "[500, 500]"}}), "phase_diagram");
-    expect_foretold(read("closed_vessel", {{"grid.cells", "[500, 500]"}}), "closed_vessel");
+    expect_estimate(read("zalesak", {{"grid.cells", "[500, 500]"}, {"time.dt", "1e-4"}}), "transport");
+    expect_estimate(read("poisson_mms", {{"grid.cells", "[500, 500]"}}), "poisson");
+    expect_estimate(read("phase_diagram", {{"grid.cells", "[500, 500]"}}), "phase_diagram");
+    expect_estimate(read("closed_vessel", {{"grid.cells", "[500, 500]"}}), "closed_vessel");
 }
 
-TEST("liquid that a small copy would not see is foretold: a film of two cells, a drop, a pool with a solid in it") {
+TEST("liquid that a small copy would not see is estimated: a film of two cells, a drop, a pool with a solid in it") {
     const auto fluid = [](const char* solver, const char* liquid, const std::string& cells) {
         return scene::parse(std::string("solver = \"") + solver + "\"\ndim = 3\ngrid = { cells = " + cells +
                                 ", size = [1.0, 1.0, 1.0] }\ntime = { end = 1.0 }\nliquid = [ " + liquid + " ]\n",
@@ -102,8 +102,8 @@ TEST("liquid that a small copy would not see is foretold: a film of two cells, a
     };
     for (const char* solver : {"mac_water", "sph", "pbf"}) {
         const std::string name = solver, cells = "[100, 100, 100]";
-        expect_foretold(fluid(solver, "{ shape = \"box\", min = [0, 0, 0], max = [1, 0.0201, 1] }", cells), name + ", a film");
-        expect_foretold(fluid(solver, "{ shape = \"sphere\", centre = [0.5, 0.7, 0.5], radius = 0.2 }", cells), name + ", a drop");
+        expect_estimate(fluid(solver, "{ shape = \"box\", min = [0, 0, 0], max = [1, 0.0201, 1] }", cells), name + ", a film");
+        expect_estimate(fluid(solver, "{ shape = \"sphere\", centre = [0.5, 0.7, 0.5], radius = 0.2 }", cells), name + ", a drop");
     }
 }
 
@@ -142,7 +142,7 @@ TEST("a scene that needs more memory than there is is refused in less than a sec
     }
     // some tenths on a quiet machine, and a rival for its cores
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 2.0);
-    const double solver = sim::foretell(large, sim::registry()).bytes;
+    const double solver = sim::estimate_memory(large, sim::registry()).bytes;
     EXPECT_NO_THROW(sim::require_memory(large, sim::registry(), sim::Use::solver, 1.01 * solver));
     EXPECT_THROW(sim::require_memory(large, sim::registry(), sim::Use::run, 1.01 * solver), BadInput) << "the last good state is a copy";
     EXPECT_NO_THROW(sim::require_memory(large, sim::registry(), sim::Use::run_with_frames, 1e12));
@@ -150,7 +150,7 @@ TEST("a scene that needs more memory than there is is refused in less than a sec
     EXPECT_THROW((void)scene("[2000, 2000, 2000]"), BadInput) << "more cells than can be numbered";
 }
 
-TEST_IN_2D_AND_3D("frames take on the disk what is foretold of them, without compression") {
+TEST_IN_2D_AND_3D("frames take on the disk what is estimated for them, without compression") {
     if (!output::can_write_frames()) GTEST_SKIP() << "this build writes no frames";
     for (const auto& kind : sim::registry()) {
         if (kind.plain.scene.empty()) continue;
@@ -161,7 +161,7 @@ TEST_IN_2D_AND_3D("frames take on the disk what is foretold of them, without com
             overrides.push_back({"output.every", "0.4"});
             overrides.push_back({"output.precision", single ? "\"single\"" : "\"double\""});
             Simulation run(scene::parse(plain.source(), plain.file(), {kind.schema}, overrides));
-            const auto told = sim::foretell_output(run.scene(), run.fields());
+            const auto told = sim::estimate_output(run.scene(), run.fields());
             EXPECT_EQ(told.frames, 4) << "at 0, 0.4, 0.8 and 1 s";
             const test::TemporaryFolder folder;
             output::Frames frames(folder.path(), {.compression = output::Compression::none, .single_precision = single});

@@ -1,8 +1,8 @@
-// What a scene will cost, before it runs and without building it: memory from small copies of it (sim/foretold.hpp), milliseconds from
-// rates that coarser copies show on this machine now, a number of steps from the lengths that their steps had. Blind to what comes later
-// in a run: it speaks of the scene as it begins.
+// What a scene will cost, before it runs and without building it: memory from small copies of it (sim/memory_estimate.hpp), milliseconds
+// from rates that coarser copies show on this machine now, a number of steps from the lengths that their steps had. Blind to what comes
+// later in a run: it speaks of the scene as it begins.
 #pragma once
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
 
 #include <string>
@@ -23,14 +23,14 @@ struct Rates {
     double most_cfl = 0;  // cells that anything crosses in a step; 0 where nobody says
 };
 
-struct Forecast {
+struct CostEstimate {
     std::string solver;
     int dim = 2;
     std::string cells{};
     double count = 0;
     bool particles = false;  // count is of particles
-    sim::Foretold held{};
-    sim::ForetoldOutput output{};
+    sim::MemoryEstimate held{};
+    sim::OutputEstimate output{};
     double ms = 0;                             // a step
     double dt = 0, least_dt = 0, most_dt = 0;  // a step: mean, shortest and longest of the small runs, on this scene's cells
     std::vector<Pass> passes{};                // seconds a step
@@ -41,7 +41,7 @@ struct Forecast {
 /// The first steps of a scene, timed.
 Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double enough_seconds);
 /// Two coarser copies of the scene, or the scene itself where it has none, and the powers of the size that they show.
-Forecast forecast(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds = sim::registry());
-std::string forecast_text(const Forecast& f, const scene::Scene& scene);
+CostEstimate estimate_cost(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds = sim::registry());
+std::string cost_estimate_text(const CostEstimate& f, const scene::Scene& scene);
 
 }  // namespace weir::validation

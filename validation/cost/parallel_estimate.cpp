@@ -1,4 +1,4 @@
-#include "validation/cost/over_ranks.hpp"
+#include "validation/cost/parallel_estimate.hpp"
 
 #include "core/error.hpp"
 #include "core/slabs.hpp"
@@ -87,7 +87,7 @@ scene::Scene with_planes(const scene::Scene& scene, int planes, const std::vecto
     return scene::parse(scene.source(), scene.file(), schemas, overrides);
 }
 
-std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, const OverRanks& o,
+std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, const ParallelEstimate& o,
                                     double particles) {
     const auto& kind = sim::kind_named(scene.solver(), kinds);
     const std::vector<scene::SolverSchema> schemas = scene::schemas_of(kinds);
@@ -140,16 +140,16 @@ ModelStep model_step(double computing, const StepTraffic& sent, int ranks, const
     return {ranks, computing, rounds * link.latency + (static_cast<double>(sent.beside.bytes) + sent.received) / link.bandwidth};
 }
 
-OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int ranks, const std::optional<Link>& link,
-                              const std::vector<scene::SolverKind>& kinds) {
+ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstimate& f, int ranks, const std::optional<Link>& link,
+                                      const std::vector<scene::SolverKind>& kinds) {
     sim::require_ranks(scene, ranks, kinds);
     const auto& kind = sim::kind_named(scene.solver(), kinds);
     const sim::Shares shares = sim::shares_of(scene, ranks, kind);
-    OverRanks o{.ranks = ranks,
-                .nothing_shared = ranks > 1 && shares.nothing_shared(),
-                .by_all = shares.by_all,
-                .link = link ? *link : measure_link(),
-                .seconds_each = 1e-3 * f.ms / f.count};
+    ParallelEstimate o{.ranks = ranks,
+                       .nothing_shared = ranks > 1 && shares.nothing_shared(),
+                       .by_all = shares.by_all,
+                       .link = link ? *link : measure_link(),
+                       .seconds_each = 1e-3 * f.ms / f.count};
     o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
                .cells_crossed = std::max(1, static_cast<int>(std::ceil(f.most_cfl))),
                .particles = f.particles ? f.count : 0,
@@ -175,13 +175,13 @@ OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int 
 
 namespace {
 
-std::string constants_text(const OverRanks& o, const Forecast& f) {
+std::string constants_text(const ParallelEstimate& o, const CostEstimate& f) {
     return fmt::format("  constants: {:.3g} ns per {} and step, from the rates above; {:.3g} us per message and {:.3g} GB/s {}\n",
                        1e9 * o.seconds_each, f.particles ? "particle" : "cell", 1e6 * o.link.latency, 1e-9 * o.link.bandwidth,
                        o.link.source);
 }
 
-std::string weak_text(const OverRanks& o, const Forecast& f) {
+std::string weak_text(const ParallelEstimate& o, const CostEstimate& f) {
     std::string s = f.particles ? "weak scaling, a model with the same number of particles per rank\n"
                                 : "weak scaling, a model with the same number of planes per rank\n";
     for (const ModelStep& step : o.weak)
@@ -194,7 +194,7 @@ std::string weak_text(const OverRanks& o, const Forecast& f) {
 
 }  // namespace
 
-std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::Scene& scene) {
+std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate& f, const scene::Scene& scene) {
     if (o.ranks == 1) return "1 rank: no partition, no messages\n";
     const bool planes = !o.cut.empty();
     std::string s =

@@ -12,21 +12,21 @@
 
 namespace weir::sim {
 
-struct ForetoldField {
+struct EstimatedField {
     std::string name, unit;
     Where where = Where::cell;
     int components = 1;
     double values = 0;  // of all components
 };
 
-struct Foretold {
+struct MemoryEstimate {
     double bytes = 0;  // of state and scratch, after the first step, in which lists and solves allocate their memory
     double bytes_at_start = 0;
     double surface_bytes = 0;  // peak memory of making output.surface
     double cells = 0, particles = 0;
     bool particle_solver = false;  // a solver made of particles
     bool exact = false;            // the scene was small enough to be built itself
-    std::vector<ForetoldField> fields{};
+    std::vector<EstimatedField> fields{};
     std::vector<EffectPlan> effects{};
 };
 
@@ -34,7 +34,7 @@ struct Foretold {
 inline constexpr double cells_of_copy = 131072;
 
 /// Throws BadInput where not even a copy can be built.
-Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells = cells_of_copy);
+MemoryEstimate estimate_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells = cells_of_copy);
 
 /// How a copy is made smaller. similar: one factor for all axes, for particles. like_rows: rows of cells with similar padding and number of
 /// halvings, for grids. like_columns: fewer columns of the same height, where columns are stored whole.
@@ -49,16 +49,16 @@ double wet_part(const scene::Scene& scene);
 /// Memory that can be allocated now without swapping [bytes].
 double available_memory();
 /// Number of frames of a scene, first and last included; bytes of an uncompressed frame; bytes of its largest array.
-struct ForetoldOutput {
+struct OutputEstimate {
     double frames = 0, bytes_of_frame = 0, bytes_of_array = 0;
     double bytes() const { return frames * bytes_of_frame; }
 };
-ForetoldOutput foretell_output(const scene::Scene& scene, const FieldSet& fields);
-ForetoldOutput foretell_output(const scene::Scene& scene, const Foretold& foretold);
+OutputEstimate estimate_output(const scene::Scene& scene, const FieldSet& fields);
+OutputEstimate estimate_output(const scene::Scene& scene, const MemoryEstimate& estimate);
 
 /// Memory of a run [bytes]: the solver, the last good state kept by the time loop (its fields), and, where frames are written, one array as
 /// it is written to disk (compressed arrays are no larger).
-double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool frames);
+double bytes_of_run(const scene::Scene& scene, const MemoryEstimate& estimate, bool frames);
 
 /// Ghost planes that a rank stores, where nothing crosses more than one cell in a step: 4 on each side, and one.
 inline constexpr double planes_near_cuts = 9;
@@ -69,7 +69,7 @@ std::vector<double> parts_of_planes(const scene::Scene& scene, const std::vector
 double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<double>& parts);
 
 /// The same for making output.surface: the planes of samples that the rank owns and the ghost particles that it reads.
-double surface_bytes_of_rank(const scene::Scene& scene, const Foretold& foretold, int rank, int ranks);
+double surface_bytes_of_rank(const scene::Scene& scene, const MemoryEstimate& estimate, int rank, int ranks);
 
 enum class Use { solver, run, run_with_frames };
 /// Rejects a scene that needs more memory than is available, at grid.cells, with both numbers. Small scenes are not estimated.

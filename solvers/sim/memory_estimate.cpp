@@ -1,4 +1,4 @@
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 
 #include "scene/steer.hpp"
 
@@ -240,8 +240,8 @@ bool factorises(const scene::Scene& scene) {
     return scene.has("scheme.poisson.method") && scene.text("scheme.poisson.method") == "cholmod";
 }
 
-std::vector<ForetoldField> fields_of(const FieldSet& set, const std::vector<double>& cells, double particles) {
-    std::vector<ForetoldField> list;
+std::vector<EstimatedField> fields_of(const FieldSet& set, const std::vector<double>& cells, double particles) {
+    std::vector<EstimatedField> list;
     for (const FieldView& f : set.fields) {
         const double n = product(cells), parts = f.components();
         const double values = f.where == Where::cell ? parts * n : f.where == Where::face ? parts * n + surface(cells) : parts * particles;
@@ -287,7 +287,7 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
 }
 
 /// Memory for the scene's surface mesh, extrapolated from a copy per particle, or per cell of a level set.
-double surface_bytes(const scene::Scene& scene, const Held& copy, const Foretold& f) {
+double surface_bytes(const scene::Scene& scene, const Held& copy, const MemoryEstimate& f) {
     const auto surface = reconstruction::can_contour() ? reconstruction::reconstruction_of(scene) : nullptr;
     if (!surface) return 0;
     surface->make(static_cast<const Solver&>(*copy.solver).fields(), 0);
@@ -295,10 +295,10 @@ double surface_bytes(const scene::Scene& scene, const Held& copy, const Foretold
     return times * static_cast<double>(surface->bytes());
 }
 
-Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells) {
+MemoryEstimate estimate_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells) {
     const auto cells = scene.root().numbers("grid.cells");
     const bool small = product(cells) <= copy_cells;
-    Foretold f{.cells = product(cells), .particle_solver = consists_of_particles(scene, kinds)};
+    MemoryEstimate f{.cells = product(cells), .particle_solver = consists_of_particles(scene, kinds)};
     const double wet = f.particle_solver ? wet_part(scene) : 0;
     const double enough = f.particle_solver && wet > 0 ? particles_of_copy / wet : copy_cells;
     const double least = product(cells) / std::pow(widest_copy, static_cast<double>(cells.size() - 1));
@@ -328,10 +328,10 @@ Foretold foretell(const scene::Scene& scene, const std::vector<scene::SolverKind
 namespace {
 
 /// Where no copy can be built: the minimum of any solver, about ten numbers per cell.
-Foretold foretold_or_least(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+MemoryEstimate estimate_or_least(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
     constexpr double least = 80;
     try {
-        return foretell(scene, kinds);
+        return estimate_memory(scene, kinds);
     } catch (const BadInput&) {
         const double cells = product(scene.root().numbers("grid.cells"));
         return {.bytes = least * cells, .cells = cells};
@@ -348,17 +348,17 @@ double available_memory() {
     return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
-ForetoldOutput foretell_output(const scene::Scene& scene, const Foretold& foretold) {
+OutputEstimate estimate_output(const scene::Scene& scene, const MemoryEstimate& estimate) {
     const auto names = scene.root().texts("output.fields");
     const double number = scene.text("output.precision") == "single" ? 4 : 8;
     const double end = scene::end_after(scene.number("time.end"), scene::changes_of(scene.root()));
     const double every = scene.root().number_or("output.every", infinity);
-    ForetoldOutput output;
+    OutputEstimate output;
     output.frames = 1 + (every < end ? std::ceil(end / every - 1e-9) : 1);
-    for (const ForetoldField& f : foretold.fields) {
+    for (const EstimatedField& f : estimate.fields) {
         const bool position = f.where == Where::particle && f.name == "position";
         if (!position && !names.empty() && std::find(names.begin(), names.end(), f.name) == names.end()) continue;
-        const double places = f.where == Where::particle ? foretold.particles : foretold.cells;
+        const double places = f.where == Where::particle ? estimate.particles : estimate.cells;
         const double array = number * places * (f.components == 1 ? 1 : 3);  // vectors are written with three components
         output.bytes_of_frame += array;
         output.bytes_of_array = std::max(output.bytes_of_array, array);
@@ -368,16 +368,16 @@ ForetoldOutput foretell_output(const scene::Scene& scene, const Foretold& foreto
     return output;
 }
 
-ForetoldOutput foretell_output(const scene::Scene& scene, const FieldSet& fields) {
+OutputEstimate estimate_output(const scene::Scene& scene, const FieldSet& fields) {
     const auto cells = scene.root().numbers("grid.cells");
     const double particles = particles_in(fields);
-    return foretell_output(scene, {.cells = product(cells), .particles = particles, .fields = fields_of(fields, cells, particles)});
+    return estimate_output(scene, {.cells = product(cells), .particles = particles, .fields = fields_of(fields, cells, particles)});
 }
 
-double bytes_of_run(const scene::Scene& scene, const Foretold& foretold, bool frames) {
+double bytes_of_run(const scene::Scene& scene, const MemoryEstimate& estimate, bool frames) {
     double state = 0;
-    for (const ForetoldField& f : foretold.fields) state += f.values * sizeof(real);
-    return foretold.bytes + state + (frames ? foretell_output(scene, foretold).bytes_of_array + foretold.surface_bytes : 0);
+    for (const EstimatedField& f : estimate.fields) state += f.values * sizeof(real);
+    return estimate.bytes + state + (frames ? estimate_output(scene, estimate).bytes_of_array + estimate.surface_bytes : 0);
 }
 
 std::vector<double> parts_of_planes(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
@@ -401,21 +401,21 @@ double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<d
     return bytes * std::accumulate(parts.begin() + begin, parts.begin() + end, 0.0);
 }
 
-double surface_bytes_of_rank(const scene::Scene& scene, const Foretold& foretold, int rank, int ranks) {
+double surface_bytes_of_rank(const scene::Scene& scene, const MemoryEstimate& estimate, int rank, int ranks) {
     const auto options = reconstruction::options_of(scene);
     if (!options) return 0;
     constexpr double samples_beside = 2, markers_a_cell = 2;
     const double planes = scene.root().numbers("grid.cells").back(), cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
     const double beside = options->method == reconstruction::Method::level_set
                               ? samples_beside
-                              : reconstruction::read_beside(*options) / (foretold.particle_solver ? 1 : markers_a_cell);
-    return foretold.surface_bytes * std::min(1.0, 1.0 / ranks + (ranks > 1 ? cuts * beside / planes : 0));
+                              : reconstruction::read_beside(*options) / (estimate.particle_solver ? 1 : markers_a_cell);
+    return estimate.surface_bytes * std::min(1.0, 1.0 / ranks + (ranks > 1 ? cuts * beside / planes : 0));
 }
 
 void require_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, Use use, double available) {
     const double cells = product(scene.root().numbers("grid.cells"));
     if (cells <= cells_of_copy || (cells * most_bytes_a_cell <= available && !factorises(scene))) return;
-    const Foretold f = foretold_or_least(scene, kinds);
+    const MemoryEstimate f = estimate_or_least(scene, kinds);
     const double needed = use == Use::solver ? f.bytes : bytes_of_run(scene, f, use == Use::run_with_frames);
     if (needed <= available) return;
     constexpr double gigabyte = 1e9;

@@ -1,6 +1,6 @@
 // What `weir cost --plan` says before a scene runs, against what the scene then does. For every solver that registers a plain scene.
 // Blind to what a scene becomes later, and to machines that are disturbed by more than a factor between two measurements of a second each.
-#include "validation/cost/forecast.hpp"
+#include "validation/cost/cost_estimate.hpp"
 
 #include "core/parallel.hpp"
 #include "sim/simulation.hpp"
@@ -17,11 +17,11 @@ scene::Scene scene_of(const scene::SolverKind& kind, int dim) { return plain_sce
 
 }  // namespace
 
-TEST_IN_2D_AND_3D("memory of a scene that is small enough to be built is foretold to the byte, fields and effects among it") {
+TEST_IN_2D_AND_3D("memory of a scene that is small enough to be built is estimated to the byte, fields and effects among it") {
     for (const auto& kind : sim::registry()) {
         if (kind.plain.scene.empty()) continue;
         const scene::Scene scene = scene_of(kind, D);
-        const Forecast f = forecast(scene);
+        const CostEstimate f = estimate_cost(scene);
         Simulation run(scene);
         double shown = 0;
         for (const auto& field : f.held.fields) shown += field.values * sizeof(real);
@@ -31,27 +31,27 @@ TEST_IN_2D_AND_3D("memory of a scene that is small enough to be built is foretol
     }
 }
 
-TEST("a scene of 500^3 cells is foretold without being built, its steps as a range") {
+TEST("a scene of 500^3 cells is estimated without being built, its steps as a range") {
     const auto scene = scene::parse(
         "solver = \"mac\"\ndim = 3\ngrid = { cells = [499, 499, 499], size = [1.0, 1.0, 1.0] }\ntime = { end = 1.0 }\n"
         "initial.velocity = \"random\"\n",
         "scene.toml", sim::schemas());
-    const Forecast f = forecast(scene);
+    const CostEstimate f = estimate_cost(scene);
     EXPECT_FALSE(f.held.exact);
     EXPECT_GT(f.held.bytes, 80 * f.held.cells) << "what was once assumed";
     EXPECT_EQ(f.measured.size(), 2u) << "499 is a prime";
     EXPECT_GT(f.least_dt, 0);
     EXPECT_GE(f.most_dt, f.least_dt);
-    const std::string text = forecast_text(f, scene);
+    const std::string text = cost_estimate_text(f, scene);
     EXPECT_NE(text.find(" steps, "), std::string::npos) << text;
     EXPECT_NE(text.find("from coarser copies of the scene"), std::string::npos) << text;
 }
 
-// The bar is 30 per cent. The forecast and the run are measured one after the other, three times, and the median of their ratio counts: a
+// The bar is 30 per cent. The estimate and the run are measured one after the other, three times, and the median of their ratio counts: a
 // disturbance that is over within a second spoils one of them. Where that median is beyond the bar, six times more: the median of nine
 // counts. Tall cells in 3D are held to a factor of 1.4 either way: a coarser copy has other columns, with fewer tall cells (1.15 to 1.22
 // measured).
-TEST_IN_2D_AND_3D("a step takes within 30 per cent of the time foretold") {
+TEST_IN_2D_AND_3D("a step takes within 30 per cent of the estimated time") {
     set_threads(1);
     for (const auto& kind : sim::registry()) {
         if (kind.plain.scene.empty()) continue;
@@ -61,8 +61,8 @@ TEST_IN_2D_AND_3D("a step takes within 30 per cent of the time foretold") {
         const auto holds = [&](double ratio) { return rough ? std::abs(std::log2(ratio)) <= 0.5 : std::abs(ratio - 1) <= 0.3; };
         const auto median_of = [&](std::size_t rounds) {
             while (ratios.size() < rounds) {
-                const double foretold = forecast(scene).ms;
-                ratios.push_back(foretold / measure_rates(scene, sim::registry(), 0.5).ms);
+                const double estimated = estimate_cost(scene).ms;
+                ratios.push_back(estimated / measure_rates(scene, sim::registry(), 0.5).ms);
             }
             std::sort(ratios.begin(), ratios.end());
             return ratios[rounds / 2];
@@ -70,13 +70,13 @@ TEST_IN_2D_AND_3D("a step takes within 30 per cent of the time foretold") {
         double ratio = median_of(3);
         if (!holds(ratio)) ratio = median_of(9);
         testing::Test::RecordProperty(std::string(kind.schema.name), std::to_string(ratio));
-        EXPECT_TRUE(holds(ratio)) << kind.schema.name << ": foretold over measured, median of " << ratios.size() << ": " << ratio;
+        EXPECT_TRUE(holds(ratio)) << kind.schema.name << ": estimated over measured, median of " << ratios.size() << ": " << ratio;
     }
 }
 
-TEST("passes are foretold by name, and together are the step") {
+TEST("passes are estimated by name, and together are the step") {
     const auto& kind = sim::kind_named("mac");
-    const Forecast f = forecast(scene_with(kind, 2, 48, {"buoyancy", "confinement"}, 0.1));
+    const CostEstimate f = estimate_cost(scene_with(kind, 2, 48, {"buoyancy", "confinement"}, 0.1));
     double ms = 0;
     std::vector<std::string> names;
     for (const Pass& p : f.passes) ms += 1e3 * p.seconds, names.push_back(p.name);

@@ -3,7 +3,7 @@
 // seconds a cell or particle, a message's latency, bytes a second.
 #pragma once
 #include "core/traffic.hpp"
-#include "validation/cost/forecast.hpp"
+#include "validation/cost/cost_estimate.hpp"
 
 #include <optional>
 
@@ -27,7 +27,7 @@ struct ModelStep {
     double efficiency() const { return computing / (computing + sending); }
 };
 
-struct OverRanks {
+struct ParallelEstimate {
     int ranks = 1;
     Cut cut{};                            // empty where particles are shared
     bool own_part = false;                // each holds its own planes alone
@@ -43,9 +43,10 @@ struct OverRanks {
 };
 
 /// Refuses as the run itself would (sim::require_ranks). Without a link this machine's is measured.
-OverRanks forecast_over_ranks(const scene::Scene& scene, const Forecast& f, int ranks, const std::optional<Link>& link = std::nullopt,
-                              const std::vector<scene::SolverKind>& kinds = sim::registry());
-std::string over_ranks_text(const OverRanks& o, const Forecast& f, const scene::Scene& scene);
+ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstimate& f, int ranks,
+                                      const std::optional<Link>& link = std::nullopt,
+                                      const std::vector<scene::SolverKind>& kinds = sim::registry());
+std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate& f, const scene::Scene& scene);
 
 /// The model: a round between neighbours takes the latency, one of all as many as the logarithm of their number, and bytes their time.
 ModelStep model_step(double computing, const StepTraffic& sent, int ranks, const Link& link);
