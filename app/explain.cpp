@@ -115,7 +115,7 @@ std::string passes_text(Simulation& simulation) {
 std::string surface_text(const Simulation& simulation) {
     const auto surface = reconstruction::reconstruction_of(simulation.scene());
     if (!surface) return "";
-    const auto parts = simulation.solver().show_in_parts();
+    const auto parts = simulation.solver().distributed_view();
     const auto& mesh = surface->make_part(simulation.fields(), simulation.time());
     const std::size_t cells = begins_of_ranks(mesh.corners.size() + mesh.lines.size()).back();
     std::string text = fmt::format("surface reconstruction by {}, per frame\n", simulation.scene().text("output.surface.method"));

@@ -91,7 +91,7 @@ std::string explain_ranks(const Simulation& simulation) {
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
     text += simulation.solver().holds_own_planes() ? "; distributed storage: each rank stores and computes its own slab"
                                                    : "; replicated storage: each rank stores the whole grids and computes its own slab";
-    if (!shares.by_all.empty()) text += "; replicated work: " + shares.by_all;
+    if (!shares.replicated_work.empty()) text += "; replicated work: " + shares.replicated_work;
     return text + "\n";
 }
 
@@ -177,7 +177,7 @@ public:
     void on_frame(const Simulation& simulation) override {
         const auto start = clock::now();
         if (frames_) {
-            const auto parts = simulation.solver().show_in_parts();
+            const auto parts = simulation.solver().distributed_view();
             frames_->write(simulation.fields(), simulation.time());
         }
         by_first_rank([&] {
@@ -229,7 +229,7 @@ private:
         const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
                             : simulation.solver().holds_own_planes()     ? Holds::own_planes
                                                                          : Holds::whole_grids;
-        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.by_all, sent, states);
+        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.replicated_work, sent, states);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.steps().add(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
@@ -346,7 +346,7 @@ int simulate(const RunArguments& arguments) {
     const std::string continued = checkpoint ? sim::run_id_of(*checkpoint) : "";
     checkpoint.reset();  // the next one takes its place, and it its room on the disk
     {
-        const auto parts = simulation.solver().show_in_parts();
+        const auto parts = simulation.solver().distributed_view();
         output::check(frame_options(simulation.scene()), simulation.fields());
     }
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());

@@ -28,7 +28,7 @@ double room_in(const std::filesystem::path& folder) {
 std::string check_space(const Simulation& simulation, const std::filesystem::path& folder, bool any_size) {
     const scene::Scene& scene = simulation.scene();
     if (!output::can_write_frames()) return "";
-    const auto parts = simulation.solver().show_in_parts();
+    const auto parts = simulation.solver().distributed_view();
     const auto output = sim::estimate_output(scene, simulation.fields());
     const double room = room_in(folder), to_come = output.frames - static_cast<double>(simulation.frame());
     const double bytes = std::max(0.0, to_come) * output.bytes_of_frame;

@@ -6,8 +6,8 @@
 // CHOLMOD and Eigen of two at most; a peer that would take minutes or more memory than there is says "skipped" and why. Without --solver
 // PETSc's methods are asked on one thread, of which they make use. Started by mpirun it shares `multigrid`, or PETSc's methods, between the
 // ranks; the others are then left out.
-#include "core/cut_by_work.hpp"
 #include "core/error.hpp"
+#include "core/load_balance.hpp"
 #include "core/slabs.hpp"
 #include "distributed/ranks.hpp"
 #include "pfmg.hpp"
@@ -132,7 +132,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         return row;
     }
     set_threads(threads);
-    const Cut cut = cut_by_work(blocks_in_planes(problem.A.cells), slabs().ranks());
+    const Cut cut = load_balanced_cut(blocks_in_planes(problem.A.cells), slabs().ranks());
     const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0" || solver.starts_with("petsc");
     const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
     row.setup_ms = row.solve_ms = infinity;

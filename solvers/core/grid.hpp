@@ -101,12 +101,12 @@ template <class T, int D>
 Planes planes_of(Grid<T, D>& q) {
     return {q.data(), sizeof(T) * static_cast<std::size_t>(q.stride(D - 1)), q.extent()[D - 1], 0, q.store().held()};
 }
-/// Halo exchange: fills the `deep` ghost planes on both sides of this rank's subdomain.
+/// Halo exchange: fills `ghost_planes` planes on both sides of this rank's subdomain.
 template <class T, int D>
-void refresh(Grid<T, D>& q, bool ring, int deep = 1) {
+void refresh(Grid<T, D>& q, bool ring, int ghost_planes = 1) {
     if (!is_distributed()) return;
-    q.store().open(deep, ring);
-    slabs().refresh(*detail::own_share.cut, planes_of(q), deep, ring);
+    q.store().open(ghost_planes, ring);
+    slabs().refresh(*detail::own_share.cut, planes_of(q), ghost_planes, ring);
 }
 /// All-gather: every rank receives all planes.
 template <class T, int D>

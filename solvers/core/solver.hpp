@@ -136,12 +136,12 @@ public:
     virtual std::string concern() const { return {}; }
     virtual FieldSet fields() const = 0;
     /// In parallel: a scope in which fields() shows other data than all data on all ranks. The call is collective.
-    class Brought {
+    class DistributedView {
     public:
-        virtual ~Brought() = default;
+        virtual ~DistributedView() = default;
     };
     /// Where particles are replicated on all ranks: each rank shows an equal part, in the order of one process.
-    virtual std::unique_ptr<Brought> show_in_parts() const { return nullptr; }
+    virtual std::unique_ptr<DistributedView> distributed_view() const { return nullptr; }
     /// In parallel: returns whether the fields have distributed storage.
     virtual bool holds_own_planes() const { return false; }
     /// The components of a field at a point, from a solver that evaluates them without a grid; false: interpolate fields().

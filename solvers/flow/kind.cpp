@@ -62,7 +62,7 @@ scene::SolverKind kind() {
                           check_parallel};
     mac.holds_own_part = staggered::holds_own_planes;
     mac.sends = traffic_of_step;
-    mac.by_all = staggered::pressure_by_all;
+    mac.replicated_work = staggered::replicated_pressure;
     return mac;
 }
 

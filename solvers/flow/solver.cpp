@@ -1,7 +1,7 @@
 #include "flow/solver.hpp"
 
-#include "core/cut_by_work.hpp"
 #include "core/error.hpp"
+#include "core/load_balance.hpp"
 #include "flow/emitters.hpp"
 #include "geometry/brush.hpp"
 #include "scene/names.hpp"
@@ -217,7 +217,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     remembered_.insert(remembered_.end(), remembered_fields_.begin(), remembered_fields_.end());
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
-    if (move_as_told(solids_.solids())) refuse_squeezing(scene, state_, solids_);
+    if (move_as_prescribed(solids_.solids())) refuse_squeezing(scene, state_, solids_);
     clear_solids();
     smoke_removed_ = 0;  // smoke placed inside a solid by the scene does not count
     if (solids_.moving() && state_.find("smoke")) {
@@ -227,7 +227,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     apply(Stage::source, 0);  // values emitted from the start exist at the start: the first step has its forces
     passes_.reset();
     held_.made();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 template <int D>
@@ -424,7 +424,7 @@ void FlowSolver<D>::place_solids(real t, real dt) {
     const auto timed = passes_.time("solids");
     if (bodies_) bodies_->advance_free(solids_, dt);
     if (!solids_.moving()) return;
-    const AllPlanes all(!held_.alone());
+    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     projection_.set_matrix(state_);
 }
@@ -534,9 +534,9 @@ void FlowSolver<D>::check_own_planes() const {
 
 /// Gathers the planes of other ranks for reading whole fields; collective. With distributed storage it fills the ghost planes only.
 template <int D>
-void FlowSolver<D>::make_whole() const {
+void FlowSolver<D>::gather_whole() const {
     if (whole_) return;
-    if (held_.alone()) return bring_beside();
+    if (held_.distributed()) return fill_ghosts();
     const OwnPlanes mine(held_.cut());
     auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(state.u[a]);
@@ -546,7 +546,7 @@ void FlowSolver<D>::make_whole() const {
 }
 
 template <int D>
-void FlowSolver<D>::bring_beside() const {
+void FlowSolver<D>::fill_ghosts() const {
     const OwnPlanes mine = held_.own();
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all;
@@ -577,10 +577,10 @@ StepLimit FlowSolver<D>::stable_dt() const {
 
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.looking();
     FieldSet set = field_set(state_);
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
         vorticity(state_, vorticity_);
@@ -601,7 +601,7 @@ FieldSet FlowSolver<D>::fields() const {
 
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.looking();
     auto list = flow::integrals(state_);
     if (heat_)
@@ -645,7 +645,7 @@ void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
 
 template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
-    if (!held_.alone()) make_whole();
+    if (!held_.distributed()) gather_whole();
     const OwnPlanes mine = held_.looking();
     state_.save(to);
     if (bodies_) bodies_->save(to);
@@ -664,8 +664,8 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
-    whole_ = !held_.alone();
-    make_whole();
+    whole_ = !held_.distributed();
+    gather_whole();
     if (walls_) walls_->forget();
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");

@@ -41,7 +41,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     BrushForcing* brush() const override { return brush_forcing_.get(); }
@@ -93,9 +93,9 @@ private:
     StepReport report(real dt);
     void refresh_fields();
     void check_own_planes() const;
-    void make_whole() const;
+    void gather_whole() const;
 
-    void bring_beside() const;
+    void fill_ghosts() const;
     void add_loads(std::vector<Integral>& list) const;
 
     HeldPlanes held_;

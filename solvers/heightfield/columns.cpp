@@ -117,7 +117,7 @@ real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pa
 
 StepReport Columns::step(real dt) {
     const OwnPlanes mine = held_.own();
-    brought_ = held_.cut().empty();
+    ghosts_filled_ = held_.cut().empty();
     refresh(surface_, periodic_z_);
     if (brush_forcing_) {
         const auto timed = passes_.time("effect hand");
@@ -210,17 +210,17 @@ void Columns::check() const {
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void Columns::bring() const {
-    if (brought_) return;
+void Columns::fill_ghosts() const {
+    if (ghosts_filled_) return;
     const OwnPlanes mine = held_.own();
     auto& own = const_cast<Columns&>(*this);  // only rows of other ranks are written: the state does not change
-    if (held_.alone()) {
+    if (held_.distributed()) {
         const std::array<Planes, 2> all{planes_of(own.surface_), planes_of(own.rate_)};
         slabs().refresh(held_.cut(), all, 1, periodic_z_);
     } else {
         for (Field* field : {&own.surface_, &own.rate_}) gather(*field);
     }
-    brought_ = true;
+    ghosts_filled_ = true;
 }
 
 std::string Columns::concern() const {
@@ -231,7 +231,7 @@ std::string Columns::concern() const {
 }
 
 FieldSet Columns::fields() const {
-    bring();
+    fill_ghosts();
     const OwnPlanes mine = held_.looking();
     for_each_column_near(state_.plane, [&](std::size_t c) { depth_[c] = surface_[c] - state_.bed[c]; });
     FieldSet set{.grid = state_.plane.view(),
@@ -246,7 +246,7 @@ FieldSet Columns::fields() const {
         set.fields.push_back({"displaced", "m", Where::cell, "", {displaced_.values()}});
         floats_.show(set);
     }
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     return set;
 }
 
@@ -305,7 +305,7 @@ void Columns::edited(const EditableField& field) {
 }
 
 void Columns::save(Checkpoint& to) const {
-    if (!held_.alone()) bring();
+    if (!held_.distributed()) fill_ghosts();
     const OwnPlanes mine = held_.looking();
     put_planes(to, "surface", surface_);
     put_planes(to, "rate", rate_);
@@ -329,7 +329,7 @@ void Columns::restore(const Checkpoint& from) {
     steps_ = from.get_value<std::int64_t>("steps");
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
-    brought_ = !held_.alone();
+    ghosts_filled_ = !held_.distributed();
 }
 
 std::size_t Columns::bytes() const {

@@ -59,7 +59,7 @@ void ShallowWater::measure() {
 /// Audusse et al. 2004 with Heun's method.
 StepReport ShallowWater::step(real dt) {
     const OwnPlanes mine = held_.own();
-    brought_ = held_.cut().empty();
+    ghosts_filled_ = held_.cut().empty();
     const real cfl = dt * rate_;
     effects_.apply(Stage::source, state_, dt, passes_);
     if (raised_) raise_bed(state_.time + dt);
@@ -79,33 +79,33 @@ void ShallowWater::raise_bed(real t) {
 void ShallowWater::move_water(real dt) {
     const auto timed = passes_.time("move water");
     const Water now{state_.h.data(), state_.qx.data(), state_.qz.data()}, next{h1_.data(), qx1_.data(), qz1_.data()};
-    bring_beside({&state_.h, &state_.qx, &state_.qz}, rows_beside);
+    fill_ghost_rows({&state_.h, &state_.qx, &state_.qz}, rows_beside);
     rows_.stage({.state = state_, .from = now, .to = next, .dt = dt, .second = false}, reports_);
     take_reports(0.5);
-    bring_beside({&h1_, &qx1_, &qz1_}, rows_beside);
+    fill_ghost_rows({&h1_, &qx1_, &qz1_}, rows_beside);
     rows_.stage({.state = state_, .from = next, .to = now, .dt = dt, .second = true}, reports_);
     take_reports(0.5);
 }
 
 /// In parallel, fills the ghost rows: the two reconstructions of a face read two.
-void ShallowWater::bring_beside(const std::array<Field*, 3>& water, int deep) const {
+void ShallowWater::fill_ghost_rows(const std::array<Field*, 3>& water, int ghost_planes) const {
     if (!is_distributed()) return;
     const std::array<Planes, 3> all{planes_of(*water[0]), planes_of(*water[1]), planes_of(*water[2])};
-    slabs().refresh(held_.cut(), all, deep, held_.ring());
+    slabs().refresh(held_.cut(), all, ghost_planes, held_.ring());
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void ShallowWater::bring() const {
-    if (brought_) return;
+void ShallowWater::fill_ghosts() const {
+    if (ghosts_filled_) return;
     const OwnPlanes mine = held_.own();
     auto& state = const_cast<State&>(state_);  // only rows of other ranks are written: the state does not change
-    if (held_.alone()) {
-        bring_beside({&state.h, &state.qx, &state.qz}, 1);
+    if (held_.distributed()) {
+        fill_ghost_rows({&state.h, &state.qx, &state.qz}, 1);
     } else {
         for (Field* field : {&state.h, &state.qx, &state.qz}) gather(*field);
         if (raised_) gather(state.bed);
     }
-    brought_ = true;
+    ghosts_filled_ = true;
 }
 
 void ShallowWater::take_reports(real weight) {
@@ -128,7 +128,7 @@ StepLimit ShallowWater::stable_dt() const {
 }
 
 FieldSet ShallowWater::fields() const {
-    bring();
+    fill_ghosts();
     const OwnPlanes mine = held_.looking();
     const WiderPlanes beside(1);
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
@@ -147,7 +147,7 @@ FieldSet ShallowWater::fields() const {
                             {"surface", "m", Where::cell, "", {h1_.values()}},
                             {"bed", "m", Where::cell, "", {state_.bed.values()}}}};
     if (!qz.empty()) set.fields[0].data.push_back(qz1_.values());
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     return set;
 }
 
@@ -198,7 +198,7 @@ void ShallowWater::edited(const EditableField&) {
 }
 
 void ShallowWater::save(Checkpoint& to) const {
-    if (!held_.alone()) bring();
+    if (!held_.distributed()) fill_ghosts();
     const OwnPlanes mine = held_.looking();
     put_planes(to, "depth", state_.h);
     put_planes(to, "discharge_x", state_.qx);
@@ -225,7 +225,7 @@ void ShallowWater::restore(const Checkpoint& from) {
     rate_ = from.get_value<real>("rate");
     clipped_ = from.get_value<real>("clipped");
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
-    brought_ = !held_.alone();
+    ghosts_filled_ = !held_.distributed();
 }
 
 std::size_t ShallowWater::bytes() const {

@@ -14,7 +14,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
     BrushForcing* brush() const override { return brush_forcing_.get(); }
@@ -33,8 +33,8 @@ private:
     void take_reports(real weight);
     void raise_bed(real t);
     void measure();
-    void bring_beside(const std::array<Field*, 3>& water, int deep) const;
-    void bring() const;
+    void fill_ghost_rows(const std::array<Field*, 3>& water, int ghost_planes) const;
+    void fill_ghosts() const;
 
     HeldPlanes held_;
     State state_;
@@ -45,7 +45,7 @@ private:
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
-    mutable bool brought_ = true;                  // whether ghost rows, or all rows, are up to date
+    mutable bool ghosts_filled_ = true;            // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

@@ -2,7 +2,7 @@
 #pragma once
 #include "geometry/sides.hpp"
 #include "geometry/solids.hpp"
-#include "particles/clamps.hpp"
+#include "particles/boundary_corrections.hpp"
 #include "particles/kernels.hpp"
 #include "particles/pairs.hpp"
 #include "particles/passes.hpp"

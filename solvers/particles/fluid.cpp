@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "core/slabs.hpp"
 #include "particles/beside_bodies.hpp"
-#include "particles/hand_over.hpp"
+#include "particles/particle_exchange.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -39,7 +39,7 @@ Fluid<D>::Fluid(const scene::Scene& scene) : domain(scene), rho0(scene.number("f
             for (int a = 0; a < D && ++at[a] == cells[a]; ++a) at[a] = 0;
         }
     };
-    shared = slabs().several() && !slabs().builds_alone();
+    shared = slabs().several() && !slabs().builds_serial();
     if (shared) {
         std::size_t all = 0, n = 0;
         each_place([&](const Vec<D>&) { ++all; });
@@ -115,17 +115,17 @@ template <int D>
 void Fluid<D>::deal(Fluid& part) const {
     part.take_setting(*this);
     part.shared = true;
-    HandOver::Arrays own, sorted;
+    ParticleExchange::Arrays own, sorted;
     const_cast<Fluid&>(*this).for_each_array([&](std::vector<real>& f) { own.push_back(&f); });  // they are only read
     part.for_each_array([&](std::vector<real>& f) { sorted.push_back(&f); });
-    HandOver hands;
-    hands.clear();
+    ParticleExchange exchange;
+    exchange.clear();
     const int ranks = slabs().ranks();
     for (int i = 0; i < count(); ++i)
-        hands.move(std::min(ranks - 1, static_cast<int>(place[static_cast<std::size_t>(i)] * ranks / next_place)), i);
-    hands.trade(own, 0);
-    part.resize(hands.movers());
-    hands.take_movers(sorted, 0);
+        exchange.migrate(std::min(ranks - 1, static_cast<int>(place[static_cast<std::size_t>(i)] * ranks / next_place)), i);
+    exchange.run(own, 0);
+    part.resize(exchange.migrated());
+    exchange.unpack_migrated(sorted, 0);
     std::vector<int> order(part.id.size());
     std::iota(order.begin(), order.end(), 0);
     const auto stands = [&](int i) { return part.place[static_cast<std::size_t>(i)]; };

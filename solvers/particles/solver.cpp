@@ -66,24 +66,24 @@ void ParticleSolver<D>::restore(const Checkpoint& from) {
 
 /// Each rank has its part.
 template <int D>
-class HostSolver<D>::Brought final : public Solver::Brought {
+class HostSolver<D>::DistributedView final : public Solver::DistributedView {
 public:
-    explicit Brought(const HostSolver& solver) : solver_(solver) {
+    explicit DistributedView(const HostSolver& solver) : solver_(solver) {
         solver_.whole_ = std::make_unique<Fluid<D>>();
         solver.fluid_.deal(*solver_.whole_);
         solver_.in_parts_ = true;
     }
-    ~Brought() override { solver_.whole_.reset(), solver_.in_parts_ = false; }
-    Brought(const Brought&) = delete;
-    Brought& operator=(const Brought&) = delete;
+    ~DistributedView() override { solver_.whole_.reset(), solver_.in_parts_ = false; }
+    DistributedView(const DistributedView&) = delete;
+    DistributedView& operator=(const DistributedView&) = delete;
 
 private:
     const HostSolver& solver_;
 };
 
 template <int D>
-std::unique_ptr<Solver::Brought> HostSolver<D>::show_in_parts() const {
-    return fluid_.shared ? std::make_unique<Brought>(*this) : nullptr;
+std::unique_ptr<Solver::DistributedView> HostSolver<D>::distributed_view() const {
+    return fluid_.shared ? std::make_unique<DistributedView>(*this) : nullptr;
 }
 
 template <int D>

@@ -95,7 +95,7 @@ public:
     }
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
-    std::unique_ptr<Solver::Brought> show_in_parts() const final;
+    std::unique_ptr<Solver::DistributedView> distributed_view() const final;
     bool checks_itself() const final { return fluid_.shared; }
     BrushForcing* brush() const final { return brush_forcing_.get(); }
 
@@ -138,7 +138,7 @@ protected:
     real speed_ = not_applicable;                  // maximum of particles and bodies after the last step; unknown before the first [m/s]
 
 private:
-    class Brought;
+    class DistributedView;
     mutable std::unique_ptr<Fluid<D>> whole_;  // as long as it is in use
 };
 

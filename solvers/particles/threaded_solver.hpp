@@ -81,7 +81,7 @@ private:
     void add_clamps(const Clamps& rank);
 
     Migration migration_;
-    HandOver::Arrays arrays_;
+    ParticleExchange::Arrays arrays_;
     Clamps clamps_before_;
     typename Fluid<D>::Quantity broken_{};
     mutable real fastest_ = not_applicable;  // in parallel: over all particles now; unknown after a restart [m/s]

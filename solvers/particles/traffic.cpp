@@ -31,7 +31,7 @@ SharedParticles shared_particles(const scene::Scene& scene, const RankOf& of, co
 
 void tally_halos(const SharedParticles& particles, const RankOf& of, std::size_t bytes, std::int64_t times, Tally& tally) {
     const int peers = std::min(of.ranks - 1, of.rank > 0 && of.rank + 1 < of.ranks ? 2 : 1);
-    tally.parcel(particles.beside * bytes, times * peers);
+    tally.message(particles.beside * bytes, times * peers);
 }
 
 void tally_migration(const SharedParticles& particles, const RankOf& of, int numbers, Tally& tally) {

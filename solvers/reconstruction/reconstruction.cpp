@@ -210,7 +210,7 @@ void Reconstruction::lay_samples(const Extent& all) {
 void Reconstruction::make_contour() {
     {
         const auto timed = passes_.time("prepare");
-        samples_.bring(cut_);
+        samples_.exchange(cut_);
         keep_out_of(samples_, flat_solids_);
         keep_out_of(samples_, solids_);
         keep_inside(samples_, domain_.lo, domain_.hi);
@@ -265,10 +265,10 @@ void Reconstruction::add_velocity(const FieldSet& fields) {
 }
 
 std::size_t Reconstruction::bytes() const {
-    std::size_t brought = 0;
-    for (const auto* lists : {&brought_.x, &brought_.v})
-        for (const auto& list : *lists) brought += list.capacity() * sizeof(real);
-    return 3 * cloud_.x[0].capacity() * sizeof(real) + cloud_.source.capacity() * sizeof(int) + brought + field_.bytes() +
+    std::size_t received = 0;
+    for (const auto* lists : {&received_.x, &received_.v})
+        for (const auto& list : *lists) received += list.capacity() * sizeof(real);
+    return 3 * cloud_.x[0].capacity() * sizeof(real) + cloud_.source.capacity() * sizeof(int) + received + field_.bytes() +
            samples_.depth.bytes() + 3 * mesh_.points.capacity() * sizeof(Vec<3>) + mesh_.corners.capacity() * sizeof(mesh_.corners[0]) +
            mesh_.lines.capacity() * sizeof(mesh_.lines[0]) + across_.capacity() * sizeof(real) + mesh_.thickness.capacity() * sizeof(real);
 }

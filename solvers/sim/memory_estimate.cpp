@@ -171,8 +171,8 @@ double particles_in(const FieldSet& fields) {
 
 class WholeGrids {
 public:
-    WholeGrids() : before_(slabs().holds_whole()) { slabs().hold_whole(true), slabs().build_alone(true); }
-    ~WholeGrids() { slabs().hold_whole(before_), slabs().build_alone(false); }
+    WholeGrids() : before_(slabs().holds_whole()) { slabs().hold_whole(true), slabs().build_serial(true); }
+    ~WholeGrids() { slabs().hold_whole(before_), slabs().build_serial(false); }
     WholeGrids(const WholeGrids&) = delete;
     WholeGrids& operator=(const WholeGrids&) = delete;
 

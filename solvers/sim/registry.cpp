@@ -1,6 +1,6 @@
 #include "sim/registry.hpp"
 
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "flow/solver.hpp"
 #include "heightfield/solver.hpp"
 #include "pbf/solver.hpp"
@@ -74,13 +74,13 @@ Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& 
     if (kind.cut)
         shares.cut = kind.cut(scene, ranks);
     else if (kind.work_of_planes)
-        shares.cut = cut_by_work(kind.work_of_planes(scene, nullptr), ranks);
+        shares.cut = load_balanced_cut(kind.work_of_planes(scene, nullptr), ranks);
     else
         shares.cut = cut_of(planes_of(scene), ranks);
     if (shares.cut.empty())
-        shares.by_all = "all of it";
-    else if (kind.by_all)
-        shares.by_all = kind.by_all(scene, shares.cut);
+        shares.replicated_work = "all of it";
+    else if (kind.replicated_work)
+        shares.replicated_work = kind.replicated_work(scene, shares.cut);
     return shares;
 }
 

@@ -1,6 +1,6 @@
 #include "sim/simulation.hpp"
 
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "core/parallel.hpp"
 #include "core/thread_count.hpp"
 #include "geometry/mesh/mesh.hpp"
@@ -107,13 +107,13 @@ long cells_of(const scene::Scene& scene) {
 
 /// Number of threads that the cells of a scene have enough work for.
 int threads_for(const scene::Scene& scene) {
-    const ThreadsWorth worth(cells_of(scene));
+    const ThreadCountScope worth(cells_of(scene));
     return weir::threads();
 }
 
 std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Cut& cut) {
-    const ThreadsWorth worth(cells_of(scene));
-    const CutSo so(cut);
+    const ThreadCountScope worth(cells_of(scene));
+    const PartitionScope so(cut);
     return kind.make(scene);
 }
 
@@ -171,7 +171,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       threads_(threads_for(scene_)) {
     read_times();
     if (scene_.has("output.fields")) {
-        const auto parts = static_cast<const Solver&>(*solver_).show_in_parts();
+        const auto parts = static_cast<const Solver&>(*solver_).distributed_view();
         check_output_fields(scene_, solver_->fields());
     }
     refuse_ignored(scene_, kind_);
@@ -224,7 +224,7 @@ Cut Simulation::better_cut(const Checkpoint& state) const {
     constexpr double worth = 0.9;  // the solver is rebuilt for it, which takes as long as some steps
     const auto work = kind_.work_of_planes(scene_, &state);
     if (static_cast<int>(work.size()) != present.planes()) return {};  // of another scene, which the solver rejects
-    Cut cut = cut_by_work(work, present.ranks());
+    Cut cut = load_balanced_cut(work, present.ranks());
     const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
     return most(cut) < worth * most(present) ? cut : Cut{};
 }

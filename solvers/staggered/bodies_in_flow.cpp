@@ -28,7 +28,7 @@ constexpr real first_tolerance = 1e-2, of_change = 1e-2;
 constexpr real differs = 5;
 
 /// Part of the tolerance for the pressure solve where the system is monolithic: the following change of the velocities is then round-off.
-constexpr real alone = 0.9;
+constexpr real monolithic_part = 0.9;
 
 /// Largest ratio of added mass to mass for bodies in the pressure matrix, whose condition number grows with it. Lighter bodies are coupled
 /// by partitioned iterations.
@@ -712,7 +712,7 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
     real solve_tolerance = coupled ? std::max(enough, first_tolerance) : enough, left = 0,
          change = 0;  // left: residual before the last change
     if (coupled && join_matrix(s)) {
-        if (fluid_decides(placement.solids(), dt)) solve_tolerance = alone * tolerance;
+        if (fluid_decides(placement.solids(), dt)) solve_tolerance = monolithic_part * tolerance;
         expect_others(s, dt);
         adopt(s, dt, b);
     }

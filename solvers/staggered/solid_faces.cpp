@@ -118,8 +118,8 @@ void SolidPlacement<D>::fill_ghosts(MacState<D>& s, int planes, const std::funct
 template <int D>
 void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
-    const bool alone = corner_.store().windowed();
-    const AllPlanes all(!alone);  // distributed storage: each rank computes all planes that it stores
+    const bool distributed = corner_.store().windowed();
+    const AllPlanes all(!distributed);  // distributed storage: each rank computes all planes that it stores
     solids_.set_time(time_ = t);
     find_changed(s);
     for (std::size_t box = 0; box < changed_.size(); ++box) {
@@ -129,7 +129,7 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
         place_cells(s, box);
     }
     extends_ = false;
-    if (alone && moving()) rate_ = find_rate(s);
+    if (distributed && moving()) rate_ = find_rate(s);
 }
 
 /// Signed distances at the corners of a box, as far as they are used. The two ends of a periodic axis get the same bits, so that face

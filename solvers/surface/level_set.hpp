@@ -46,7 +46,7 @@ public:
     /// that a rank reads.
     void advect(const MacVelocity<D>& u, real dt, int reach = 0);
     /// In parallel, gathers φ from all ranks.
-    void make_whole() { gather(phi); }
+    void gather_whole() { gather(phi); }
     void make_layers_whole() { gather(layer_); }
     /// Particle level-set correction: unites the liquid with spheres around escaped markers. Returns how many of this rank's own markers
     /// had escaped. Markers must be sorted. `part`, if given: the liquid fraction of each cell; a marker in a cell without liquid is
@@ -90,7 +90,7 @@ private:
     void for_each_open_beside_closed(const std::vector<char>& planes, F&& f) const;
     void find_skin(const std::vector<char>& planes);
     void continue_layer(std::size_t first, std::size_t last);
-    void share_skin(bool alone);
+    void share_skin(bool distributed);
     void uncover(const Grid<std::uint8_t, D>& closed);
     void continue_into_solids();
     /// Width of the cell normal to the surface near it [m].

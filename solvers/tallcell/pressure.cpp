@@ -270,7 +270,7 @@ typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) con
 }
 
 template <int D>
-void TallPressure<D>::show_heights(Grid<real, D>& to) const {
+void TallPressure<D>::write_heights(Grid<real, D>& to) const {
     const Knots& knots = knots_;
     const ColumnRange own = layout_.own();
     parallel_for(own.begin, own.end, [&](int c) {

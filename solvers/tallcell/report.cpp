@@ -8,11 +8,11 @@ namespace weir::tallcell {
 
 template <int D>
 FieldSet TallCells<D>::fields() const {
-    make_whole();
-    if (pressure_.has_all()) pressure_.show_heights(tall_);
+    gather_whole();
+    if (pressure_.has_all()) pressure_.write_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     FieldView velocity{"velocity", "m/s", Where::face, "", {}};
     for (int a = 0; a < D; ++a) velocity.data.push_back(state_.u[a].values());
     set.fields.push_back(std::move(velocity));
@@ -24,7 +24,7 @@ FieldSet TallCells<D>::fields() const {
 
 template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_, &volume_.part())
                                      .integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
@@ -38,12 +38,12 @@ std::vector<Integral> TallCells<D>::integrals() const {
 
 template <int D>
 void TallCells<D>::save(Checkpoint& to) const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
-    if (!held_.alone()) {  // global values, as in the whole state
+    if (!held_.distributed()) {  // global values, as in the whole state
         const_cast<LevelSet<D>&>(surface_).make_layers_whole();
-        const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
-        const_cast<LiquidVolume<D>&>(volume_).make_whole();
+        const_cast<Leapfrog<D>&>(leapfrog_).gather_whole();
+        const_cast<LiquidVolume<D>&>(volume_).gather_whole();
         gather(const_cast<MacState<D>&>(state_).cells);
     }
     state_.save(to);
@@ -74,7 +74,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     remesh();
     mark_liquid_faces();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 template <int D>

@@ -15,7 +15,7 @@ StepReport TallCells<D>::step(real dt) {
     leapfrog_.advance(state_.u, dt);  // u at the middle of the step
     const real kick = leapfrog_.kick(dt, true);
     leapfrog_.keep(state_.u);
-    bring_faces(dt);  // halo exchange in parallel, as deep as the motion
+    refresh_velocity(dt);  // halo exchange in parallel, as deep as the motion
     place_solids(state_.time + dt);
     move_surface(dt);                               // Dφ/Dt = 0, and φ is a distance again
     control_volume();                               // only if the scene names it
@@ -60,7 +60,7 @@ void TallCells<D>::find_rate(real dt) {
 template <int D>
 void TallCells<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    const AllPlanes all(!held_.alone());
+    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     for_each_held(closed_, Index<D>{}, frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
     in_solids_.find(solids_, state_, frame_, steps_ == 0);

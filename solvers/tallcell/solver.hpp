@@ -45,7 +45,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     std::vector<Integral> integrals() const override;
     BrushForcing* brush() const override { return brush_forcing_.get(); }
     real time() const override { return state_.time; }
@@ -82,9 +82,9 @@ private:
     void extend_velocity();
 
     // In parallel (ranks.cpp)
-    void bring_faces(real dt);
-    void make_whole() const;
-    void bring_beside() const;
+    void refresh_velocity(real dt);
+    void gather_whole() const;
+    void fill_ghosts() const;
 
     void set_fixed_faces();
     void mark_liquid_faces();

@@ -51,7 +51,7 @@ TallCells<D>::TallCells(const scene::Scene& scene)
     set_fixed_faces();
     extend_velocity();
     held_.made();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 template <int D>

@@ -102,8 +102,8 @@ scene::SolverKind kind() {
     water.holds_own_part = staggered::holds_own_planes;
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
-    water.by_all = [](const scene::Scene& scene, const Cut& cut) {
-        return staggered::pressure_by_all(scene, cut) + ", extrapolation of the level set into solids";
+    water.replicated_work = [](const scene::Scene& scene, const Cut& cut) {
+        return staggered::replicated_pressure(scene, cut) + ", extrapolation of the level set into solids";
     };
     return water;
 }

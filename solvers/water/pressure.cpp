@@ -39,7 +39,7 @@ template <int D>
 void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state) {
     const auto find = [&] {
         find_liquid(surface, closed);
-        bring_liquid();
+        refresh_liquid();
         state.cells = A_.cells;
         for (int a = 0; a < D; ++a) set_weights(surface, state, a);
         refresh(A_.weight[D - 1], frame_.periodic(D - 1));  // those above the last cells
@@ -51,7 +51,7 @@ void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std:
 
 /// In parallel, exchanges the flags of liquid cells at the subdomain boundaries.
 template <int D>
-void SurfacePressure<D>::bring_liquid() {
+void SurfacePressure<D>::refresh_liquid() {
     if (!is_distributed()) return;
     const std::array<Planes, 2> both{planes_of(A_.cells), planes_of(liquid_)};
     slabs().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));

@@ -51,7 +51,7 @@ public:
 
 private:
     const poisson::Report& solve(MacState<D>& state);
-    void bring_liquid();
+    void refresh_liquid();
     void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
     real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;

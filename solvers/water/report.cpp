@@ -10,12 +10,12 @@ using poisson::Cell;
 
 template <int D>
 FieldSet Water<D>::fields() const {
-    make_whole();
+    gather_whole();
     gather_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
-    if (held_.alone()) set.cut = &held_.cut();
-    set.particles_in_parts = held_.alone();
+    if (held_.distributed()) set.cut = &held_.cut();
+    set.particles_in_parts = held_.distributed();
     const Markers<D>& markers = set.particles_in_parts ? markers_ : all_markers();
     const auto own_markers = [&] {
         const OwnPlanes mine = held_.own();
@@ -42,7 +42,7 @@ FieldSet Water<D>::fields() const {
 
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
     const auto [first, last] = markers_.own(frame_);
     const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
@@ -66,12 +66,12 @@ std::vector<Integral> Water<D>::integrals() const {
 
 template <int D>
 void Water<D>::save(Checkpoint& to) const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
-    if (!held_.alone()) {  // global values, as in the whole state
+    if (!held_.distributed()) {  // global values, as in the whole state
         const_cast<LevelSet<D>&>(surface_).make_layers_whole();
-        const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
-        const_cast<LiquidVolume<D>&>(volume_).make_whole();
+        const_cast<Leapfrog<D>&>(leapfrog_).gather_whole();
+        const_cast<LiquidVolume<D>&>(volume_).gather_whole();
     }
     const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(escaped_), sum_of_ranks(reseeded_)};
     state_.save(to);
@@ -135,8 +135,8 @@ void Water<D>::restore(const Checkpoint& from) {
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
-    whole_ = !held_.alone(), markers_whole_ = false;
-    make_whole();
+    whole_ = !held_.distributed(), markers_whole_ = false;
+    gather_whole();
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
     mark_liquid_faces();

@@ -85,7 +85,7 @@ void Water<D>::move_solids(real t) {
 template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    const AllPlanes all(!held_.alone());
+    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     mark_closed();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
@@ -129,7 +129,7 @@ void Water<D>::correct_surface(real dt) {
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
-    if (!held_.alone()) surface_.make_whole();
+    if (!held_.distributed()) surface_.gather_whole();
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 

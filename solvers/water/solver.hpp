@@ -82,7 +82,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     BrushForcing* brush() const override { return brush_forcing_.get(); }
@@ -152,8 +152,8 @@ private:
     void refresh_velocity(real dt);
     std::array<std::int64_t, 2> migrate_markers();
     void check_own() const;
-    void make_whole() const;
-    void bring_beside() const;
+    void gather_whole() const;
+    void fill_ghosts() const;
     void gather_markers() const;
     void fill_solid_ghosts();
     void restore_markers(const Checkpoint& from);

@@ -1,5 +1,5 @@
 // Initial state of a scene with liquid: the level set of its shapes, its markers, its velocity.
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "geometry/brush.hpp"
 #include "scene/names.hpp"
 #include "staggered/initial.hpp"
@@ -73,7 +73,7 @@ Water<D>::Water(const scene::Scene& scene)
     extend_velocity(0);
     seed_markers();
     held_.made();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 /// The initial pressure for friction: hydrostatic, zero in the highest liquid cell.

@@ -90,8 +90,8 @@ private:
             return static_cast<std::size_t>(std::llround(markers)) * static_cast<std::size_t>(numbers) * sizeof(real);
         };
         const int first = tally_.cut().begin(rank), last = tally_.cut().end(rank, n_[D - 1]) - 1;
-        if (rank > 0 || ring_) tally_.parcel(bytes_in(first));
-        if (rank + 1 < ranks || ring_) tally_.parcel(bytes_in(last));
+        if (rank > 0 || ring_) tally_.message(bytes_in(first));
+        if (rank + 1 < ranks || ring_) tally_.message(bytes_in(last));
         if (open) tally_.everywhere(sizeof(std::int64_t), 2, sizeof(std::int64_t) * static_cast<std::size_t>(ranks));
     }
     /// Redistancing; then the liquid flags and the matrix.

@@ -1,5 +1,5 @@
 // Estimated work of a step per plane of cells, for load balancing.
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "geometry/wet_part.hpp"
 #include "water/solver.hpp"
 

@@ -206,7 +206,7 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     const Cut columns = cut_of_columns(count, of.ranks);
     const auto own = static_cast<std::size_t>(columns.end(of.rank, count) - columns.begin(of.rank));
     for (int peer = 0; peer < of.ranks; ++peer)
-        if (peer != of.rank) tally.parcel(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * each, sums);
+        if (peer != of.rank) tally.message(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * each, sums);
     tally.sent().rounds += sums;
     return tally.sent();
 }

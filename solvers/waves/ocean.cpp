@@ -1,6 +1,6 @@
 #include "waves/ocean.hpp"
 
-#include "core/in_turn.hpp"
+#include "core/rank_ordered.hpp"
 #include "waves/random.hpp"
 
 #include <cmath>
@@ -222,7 +222,7 @@ Sum Ocean::sum_at(real x, real z, const F& add) const {
                 if (const Wave w = wave(m, n); w.k > 0) add(sum, w, plane_.at(m, n), along_x * along_z[static_cast<std::size_t>(n)]);
         }
     };
-    if (!plane_.whole()) return in_turn(Sum{}, add_held);
+    if (!plane_.whole()) return rank_ordered_reduction(Sum{}, add_held);
     turn_all();
     Sum sum{};
     add_held(sum);

@@ -53,12 +53,12 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 }
 
 /// While it lives, slabs() are those of a rank that exchanges nothing: for whoever asks how many there are.
-class Pretended {
+class DryRun {
 public:
-    Pretended(int rank, int ranks) { set_slabs(std::make_unique<Slabs>(rank, ranks)); }
-    ~Pretended() { set_slabs(nullptr); }
-    Pretended(const Pretended&) = delete;
-    Pretended& operator=(const Pretended&) = delete;
+    DryRun(int rank, int ranks) { set_slabs(std::make_unique<Slabs>(rank, ranks)); }
+    ~DryRun() { set_slabs(nullptr); }
+    DryRun(const DryRun&) = delete;
+    DryRun& operator=(const DryRun&) = delete;
 };
 
 int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.root().numbers("grid.cells").back()); }
@@ -147,7 +147,7 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
     const sim::Shares shares = sim::shares_of(scene, ranks, kind);
     ParallelEstimate o{.ranks = ranks,
                        .nothing_shared = ranks > 1 && shares.nothing_shared(),
-                       .by_all = shares.by_all,
+                       .replicated_work = shares.replicated_work,
                        .link = link ? *link : measure_link(),
                        .seconds_each = 1e-3 * f.ms / f.count};
     o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
@@ -156,7 +156,7 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
                .viscous_iterations = static_cast<int>(std::lround(f.viscous_iterations))};
     o.cut = shares.cut;
     {
-        const Pretended several(0, ranks);
+        const DryRun several(0, ranks);
         o.own_part =
             ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene, o.cut)));
     }
@@ -188,7 +188,7 @@ std::string weak_text(const ParallelEstimate& o, const CostEstimate& f) {
         s += fmt::format("  {:5} ranks  {:10.4g} ms computing  {:10.4g} ms communication  {:5.1f}%\n", step.ranks, 1e3 * step.computing,
                          1e3 * step.sending, 100 * step.efficiency());
     s += constants_text(o, f);
-    if (!o.by_all.empty()) s += "  replicated work is counted as distributed: the true efficiency is lower\n";
+    if (!o.replicated_work.empty()) s += "  replicated work is counted as distributed: the true efficiency is lower\n";
     return s;
 }
 
@@ -206,7 +206,7 @@ std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate
                      !o.own_part ? "the whole grids"
                      : planes    ? "its slab and ghost planes"
                                  : "its own and ghost particles",
-                     o.by_all.empty() ? "" : "; replicated work: ", o.by_all);
+                     o.replicated_work.empty() ? "" : "; replicated work: ", o.replicated_work);
     for (std::size_t rank = 0; rank < o.bytes.size(); ++rank) {
         const int r = static_cast<int>(rank);
         if (o.ranks > most_listed && r != 0 && r != o.ranks / 2 && r + 1 != o.ranks) continue;  // those at the ends, and one between

@@ -32,7 +32,7 @@ struct ParallelEstimate {
     Cut cut{};                            // empty where particles are shared
     bool own_part = false;                // each holds its own planes alone
     bool nothing_shared = false;          // every rank does all of it
-    std::string by_all{};                 // what every rank does alone
+    std::string replicated_work{};        // what every rank does alone
     std::vector<double> bytes{};          // that each holds
     std::vector<double> surface_bytes{};  // more while output.surface is made
     StepShape shape{};

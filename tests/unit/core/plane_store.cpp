@@ -59,9 +59,9 @@ std::size_t resident(const Grid<T, D>& q) {
 
 TEST("a rank holds its planes and so many beyond its cuts, around a ring too, and what lies beyond an end that it comes to") {
     const Cut cut{{0, 8, 16, 24}};
-    const auto list = [&](int rank, int count, int margin, int deep, bool ring) {
+    const auto list = [&](int rank, int count, int margin, int ghost_planes, bool ring) {
         std::vector<int> planes;
-        const auto held = planes_held(cut, rank, count, margin, deep, ring);
+        const auto held = planes_held(cut, rank, count, margin, ghost_planes, ring);
         for (int k = 0; k < static_cast<int>(held.size()); ++k)
             if (held[static_cast<std::size_t>(k)] != 0) planes.push_back(k - margin);
         return planes;
@@ -79,9 +79,9 @@ TEST(
     const ThreeRanks three;
     EXPECT_TRUE(planes_near(24, 2, false).empty());  // nobody has said that planes are shared
     const OwnPlanes mine(three.cut);
-    const auto list = [](int count, int deep, bool ring) {
+    const auto list = [](int count, int ghost_planes, bool ring) {
         std::vector<int> planes;
-        const auto near = planes_near(count, deep, ring);
+        const auto near = planes_near(count, ghost_planes, ring);
         EXPECT_EQ(static_cast<int>(near.size()), count);
         for (int k = 0; k < count; ++k)
             if (near[static_cast<std::size_t>(k)] != 0) planes.push_back(k);

@@ -63,8 +63,8 @@ struct State {
     }
     std::vector<real>& place() { return numbers[static_cast<std::size_t>(dim)]; }
     int who(int k) { return static_cast<int>(place()[static_cast<std::size_t>(k)]); }
-    HandOver::Arrays arrays() {
-        HandOver::Arrays list;
+    ParticleExchange::Arrays arrays() {
+        ParticleExchange::Arrays list;
         for (auto& array : numbers) list.push_back(&array);
         return list;
     }
@@ -82,7 +82,7 @@ struct State {
         for (int k = 0; k < migration.own(); ++k) EXPECT_TRUE(list.insert(who(k)).second) << "twice";
         return list;
     }
-    std::set<int> guests() {
+    std::set<int> ghosts() {
         std::set<int> list;
         for (int k = migration.own(); k < static_cast<int>(place().size()); ++k) EXPECT_TRUE(list.insert(who(k)).second) << "twice";
         return list;
@@ -94,15 +94,15 @@ void expect_as_defined(const Cloud& cloud, State& state) {
     Pairs all(passes_for("sse2"), cloud.frame);
     all.find(cloud.coordinates(), cloud.count(), radius);
     const CellCut& cut = *state.migration.held(state.place()).cut;
-    std::set<int> own, guests;
+    std::set<int> own, ghosts;
     for (int k = 0; k < all.size(); ++k) {
         const int cell = all.cells().cell_of()[static_cast<std::size_t>(k)];
         if (!all.is_image(k) && cut.owner(cell) == slabs().rank()) own.insert(all.owner(k));
-        if (cut.reads(slabs().rank(), cell)) guests.insert(all.owner(k));
+        if (cut.reads(slabs().rank(), cell)) ghosts.insert(all.owner(k));
     }
-    for (const int i : own) guests.erase(i);
+    for (const int i : own) ghosts.erase(i);
     EXPECT_EQ(state.own(), own) << "rank " << slabs().rank();
-    EXPECT_EQ(state.guests(), guests) << "rank " << slabs().rank();
+    EXPECT_EQ(state.ghosts(), ghosts) << "rank " << slabs().rank();
     for (int k = 0; k < static_cast<int>(state.place().size()); ++k) {
         const auto at = static_cast<std::size_t>(k), i = static_cast<std::size_t>(state.who(k));
         for (std::size_t a = 0; a < static_cast<std::size_t>(cloud.dim); ++a) ASSERT_EQ(state.numbers[a][at], cloud.x[a][i]);
@@ -198,7 +198,7 @@ TEST("a particle near a side that repeats is shown to the rank at the other end"
             state.follow(cloud);
             expect_as_defined(cloud, state);
             EXPECT_EQ(state.own().count(0), slabs().rank() == 0 ? 1u : 0u);
-            EXPECT_EQ(state.guests().count(0), slabs().rank() == 3 ? 1u : 0u);
+            EXPECT_EQ(state.ghosts().count(0), slabs().rank() == 3 ? 1u : 0u);
         },
         true);
 }

@@ -6,6 +6,6 @@
 namespace weir::app {
 
 /// Becomes the program; `called` is its name in its own messages. Throws BadInput where it is not there.
-[[noreturn]] void hand_over(const std::string& called, const std::string& program, const std::vector<std::string>& arguments);
+[[noreturn]] void start_program(const std::string& called, const std::string& program, const std::vector<std::string>& arguments);
 
 }  // namespace weir::app

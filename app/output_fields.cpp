@@ -1,4 +1,4 @@
-#include "app/shown.hpp"
+#include "app/output_fields.hpp"
 
 #include "sim/registry.hpp"
 #include "validation/cost/effect_scene.hpp"
@@ -14,7 +14,7 @@ namespace weir::app {
 
 namespace {
 
-struct Shown {
+struct OutputQuantity {
     std::string name, unit, where, takes;  // takes: what a scene must say; empty: nothing
 };
 
@@ -24,12 +24,12 @@ std::string place_of(const FieldView& field) {
 }
 
 /// Components of integrals are told apart by their last letter: momentum_x, momentum_y.
-void add(std::vector<Shown>& list, Shown shown) {
-    const auto same = [&](const Shown& s) { return s.name == shown.name && s.where == shown.where; };
+void add(std::vector<OutputQuantity>& list, OutputQuantity shown) {
+    const auto same = [&](const OutputQuantity& s) { return s.name == shown.name && s.where == shown.where; };
     if (std::none_of(list.begin(), list.end(), same)) list.push_back(std::move(shown));
 }
 
-void add_all(std::vector<Shown>& list, const scene::SolverKind& kind, const scene::Scene& scene, const std::string& takes) {
+void add_all(std::vector<OutputQuantity>& list, const scene::SolverKind& kind, const scene::Scene& scene, const std::string& takes) {
     const std::unique_ptr<Solver> solver = kind.make(scene);
     for (const FieldView& field : static_cast<const Solver&>(*solver).fields().fields)
         add(list, {field.name, field.unit, place_of(field), takes});
@@ -57,13 +57,13 @@ std::vector<std::pair<std::string, std::string>> studies_of(const std::string& s
     return {{flow + "initial.tracer" + ball, "initial.tracer"}, {flow + "initial.temperature" + ball, "initial.temperature"}};
 }
 
-std::vector<Shown> shown_by(const scene::SolverKind& kind) {
+std::vector<OutputQuantity> output_quantities(const scene::SolverKind& kind) {
     constexpr int cells = 8, dim = 3;
-    std::vector<Shown> list;
+    std::vector<OutputQuantity> list;
     if (kind.schema.effects.empty()) {
         for (const auto& [text, takes] : studies_of(kind.schema.name))
             add_all(list, kind, scene::parse(text, kind.schema.name + ".toml", {kind.schema}), takes);
-        for (Shown& s : list)  // what is carried is asked for by name, the flow is always there
+        for (OutputQuantity& s : list)  // what is carried is asked for by name, the flow is always there
             if (s.takes != "initial." + s.name) s.takes.clear();
         return list;
     }
@@ -84,17 +84,17 @@ std::vector<Shown> shown_by(const scene::SolverKind& kind) {
 
 }  // namespace
 
-std::string shown_text() {
+std::string output_fields_text() {
     std::string text;
     for (const scene::SolverKind& kind : sim::registry()) {
         text += kind.schema.name + "\n";
-        for (const Shown& s : shown_by(kind))
+        for (const OutputQuantity& s : output_quantities(kind))
             text += fmt::format("  {:22} {:12} {:10} {}\n", s.name, s.unit.empty() ? "-" : s.unit, s.where, s.takes);
     }
     return text;
 }
 
-std::string shown_markdown() {
+std::string output_fields_markdown() {
     std::string text =
         "# What solvers show\n\n`weir list fields --markdown` writes this page from scenes that it builds, in 3D.\n\n"
         "Fields go to frames (`output.fields`) and to probes, integrals to probes of kind `integral` and to the metrics of cases. What a "
@@ -102,7 +102,7 @@ std::string shown_markdown() {
     for (const scene::SolverKind& kind : sim::registry()) {
         text +=
             fmt::format("\n## `{}`\n{}\n\n| name | unit | where | required key |\n|---|---|---|---|\n", kind.schema.name, kind.schema.doc);
-        for (const Shown& s : shown_by(kind))
+        for (const OutputQuantity& s : output_quantities(kind))
             text += fmt::format("| `{}` | {} | {} | {} |\n", s.name, s.unit, s.where, s.takes.empty() ? "" : "`" + s.takes + "`");
     }
     return text;

@@ -15,7 +15,7 @@ namespace weir {
 /// Partitions the planes so that their work is as even as boundaries at multiples of 8 planes allow (of fewer where there are few planes,
 /// as in cut_of). Each rank gets at least one such slab. Planes without work still belong to the slab of their owner. One rank gets no
 /// partition.
-inline Cut cut_by_work(std::span<const std::int64_t> work, int ranks) {
+inline Cut load_balanced_cut(std::span<const std::int64_t> work, int ranks) {
     const int planes = static_cast<int>(work.size());
     Cut cut = cut_of(planes, ranks);
     if (ranks == 1) return cut;
@@ -53,24 +53,24 @@ inline std::int64_t largest_share(std::span<const std::int64_t> work, const Cut&
 }
 
 namespace detail {
-inline const Cut* cut_so = nullptr;
+inline const Cut* scope_cut = nullptr;
 }
 
 /// Scope in which new solvers use this partition. The caller knows the work of the planes; all ranks must pass the same partition.
-class CutSo {
+class PartitionScope {
 public:
-    explicit CutSo(const Cut& cut) : before_(detail::cut_so) { detail::cut_so = &cut; }
-    ~CutSo() { detail::cut_so = before_; }
-    CutSo(const CutSo&) = delete;
-    CutSo& operator=(const CutSo&) = delete;
+    explicit PartitionScope(const Cut& cut) : before_(detail::scope_cut) { detail::scope_cut = &cut; }
+    ~PartitionScope() { detail::scope_cut = before_; }
+    PartitionScope(const PartitionScope&) = delete;
+    PartitionScope& operator=(const PartitionScope&) = delete;
 
 private:
     const Cut* before_;
 };
 
 /// The partition of the scope above; without one, equal numbers of planes for all ranks.
-inline Cut cut_asked_for(int planes) {
-    if (detail::cut_so && !detail::cut_so->empty() && detail::cut_so->planes() == planes) return *detail::cut_so;
+inline Cut cut_in_scope(int planes) {
+    if (detail::scope_cut && !detail::scope_cut->empty() && detail::scope_cut->planes() == planes) return *detail::scope_cut;
     return cut_of(planes, slabs().ranks());
 }
 
