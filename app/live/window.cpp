@@ -18,7 +18,7 @@ namespace weir::live {
 
 namespace {
 
-constexpr double told_every = 0.25;  // [s]: text is dear to draw
+constexpr double told_every = 0.25;  // [s]: text is expensive to draw
 /// Where the water has not moved a brush or a text may wait so long: what is drawn for them is time that steps do not get.
 constexpr double patience = 1.0 / 40;  // [s]
 

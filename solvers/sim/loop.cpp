@@ -104,13 +104,13 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
         if (simulation.at_frame()) watcher.on_frame(simulation);
         if (!before_end && (simulation.at_frame() || simulation.steps() % good_state_every == 0)) good.keep(simulation);
         const bool finished = simulation.finished();
-        const bool asked = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 || finished);
+        const bool requested = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 || finished);
         const int stops = options.stop_requests();
         const bool stop = !finished && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
-        if (asked && finished && before_end && !simulation.steady()) {  // a later end can then be requested
+        if (requested && finished && before_end && !simulation.steady()) {  // a later end can then be requested
             put_ended(good.state, simulation.end_time());
             good.state.write(checkpoint_file(options.folder));
-        } else if (asked || stop) {
+        } else if (requested || stop) {
             save(simulation, options.folder, options.run, !stop && !finished);
         }
         if (stop) return Ending::interrupted;

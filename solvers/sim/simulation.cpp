@@ -7,11 +7,11 @@
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
-#include "sim/asked_times.hpp"
 #include "sim/extremes.hpp"
 #include "sim/finite.hpp"
 #include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
+#include "sim/requested_times.hpp"
 #include "sim/room.hpp"
 #include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
@@ -347,7 +347,7 @@ real Simulation::next_target() const {
 
 /// The same without the end of the scene.
 real Simulation::next_target_but_end() const {
-    real target = meets_frames_ && every_ < infinity ? sim::asked_time(every_, sim::first_after(every_, time())) : infinity;
+    real target = meets_frames_ && every_ < infinity ? sim::requested_time(every_, sim::first_after(every_, time())) : infinity;
     for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
         if (!reached(changes_[at].time)) return std::min(target, changes_[at].time);
     return target;
@@ -362,7 +362,7 @@ bool Simulation::shortens_for_end() const {
 /// The next frame, or the end where that comes first. A frame that rounding puts just before the end equals the end.
 real Simulation::next_frame() const {
     if (every_ == infinity || finished()) return end_;
-    const real frame = sim::asked_time(every_, sim::first_after(every_, time()));
+    const real frame = sim::requested_time(every_, sim::first_after(every_, time()));
     return frame >= end_ - 1e-9 * every_ ? end_ : frame;
 }
 

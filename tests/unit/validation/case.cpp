@@ -35,7 +35,7 @@ void expect_refused(const std::string& text, const std::string& message) {
 
 }  // namespace
 
-TEST("a case is read with its sweep of the asked size, its changes and its claims") {
+TEST("a case is read with its sweep of the requested size, its changes and its claims") {
     const std::string text = head + R"(
 set = ["fluid.viscosity = 0.02"]
 sweep = { key = "grid.cells", values = [32, 64, 128], ci = [16, 32] }

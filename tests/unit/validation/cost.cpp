@@ -86,7 +86,7 @@ TEST("the first step, which fills caches, is not timed where there is another") 
     EXPECT_EQ(t.steps, 3);
 }
 
-TEST("a study is read at the asked size; what is wrong in it is named") {
+TEST("a study is read at the requested size; what is wrong in it is named") {
     const Study full = parse_study(head + methods, "cost.toml", "cases/sample", Size::full);
     const Study ci = parse_study(head + methods, "cost.toml", "cases/sample", Size::ci);
     ASSERT_EQ(full.methods.size(), 2u);
@@ -163,7 +163,7 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
               "No configuration reaches e = 0.01; the nearest is fine with 0.1, for 33.3 ms of each 16.7 ms frame (0.5 times real time).");
 }
 
-TEST("where most methods gain nothing from a dearer setting the third sentence says so") {
+TEST("where most methods gain nothing from a more expensive setting the third sentence says so") {
     StudyResult result{.study = {.name = "s", .error = "e"}};
     for (const char* method : {"a", "b", "c"})
         for (const int setting : {1, 2}) {

@@ -89,7 +89,7 @@ TEST("a claim that does not hold gives exit code 1 and stands in the verdicts as
     EXPECT_TRUE(verdicts[2]["pass"].get<bool>());
 }
 
-TEST("a bound that is asked for and not reached is listed with its figure and claims nothing; once it is reached the list is wrong") {
+TEST("an open target is listed with its value and claims nothing; once it is met the list is wrong") {
     const Folder folder;
     const std::string held = "{ metric = \"velocity.max\", at_most = 10, why = \"w\" }";
     const auto open =

@@ -1,4 +1,4 @@
-#include "validation/stability/hardship.hpp"
+#include "validation/stability/preconditions.hpp"
 
 #include "geometry/solids.hpp"
 #include "rigid/bodies.hpp"
@@ -263,33 +263,33 @@ real value_of(const std::string& name, const Simulation& simulation, const StepR
     throw BadInput(fmt::format("there is no integral or value of a step report named \"{}\"", name));
 }
 
-void Hardship::start(const Simulation& simulation) {
+void Preconditions::start(const Simulation& simulation) {
     for (std::size_t i = 0; i < values_.size(); ++i)
-        if ((*proofs_)[i].when == Proof::When::start) values_[i] = value_of((*proofs_)[i].quantity, simulation, {});
+        if ((*preconditions_)[i].when == Precondition::When::start) values_[i] = value_of((*preconditions_)[i].quantity, simulation, {});
 }
 
-void Hardship::step(const Simulation& simulation, const StepReport& report) {
+void Preconditions::step(const Simulation& simulation, const StepReport& report) {
     for (std::size_t i = 0; i < values_.size(); ++i)
-        if ((*proofs_)[i].when == Proof::When::most)
-            values_[i] = std::max(values_[i], value_of((*proofs_)[i].quantity, simulation, report));
+        if ((*preconditions_)[i].when == Precondition::When::most)
+            values_[i] = std::max(values_[i], value_of((*preconditions_)[i].quantity, simulation, report));
 }
 
-void Hardship::end(const Simulation& simulation, const StepReport& report) {
+void Preconditions::end(const Simulation& simulation, const StepReport& report) {
     for (std::size_t i = 0; i < values_.size(); ++i)
-        if ((*proofs_)[i].when == Proof::When::end) values_[i] = value_of((*proofs_)[i].quantity, simulation, report);
+        if ((*preconditions_)[i].when == Precondition::When::end) values_[i] = value_of((*preconditions_)[i].quantity, simulation, report);
 }
 
-std::vector<Shown> Hardship::shown() const {
-    std::vector<Shown> list;
+std::vector<MeasuredValue> Preconditions::measured() const {
+    std::vector<MeasuredValue> list;
     for (std::size_t i = 0; i < values_.size(); ++i)
-        if (values_[i] > -infinity) list.push_back({(*proofs_)[i].quantity, values_[i]});
+        if (values_[i] > -infinity) list.push_back({(*preconditions_)[i].quantity, values_[i]});
     return list;
 }
 
-std::string Hardship::missing(bool at_start) const {
+std::string Preconditions::missing(bool at_start) const {
     for (std::size_t i = 0; i < values_.size(); ++i) {
-        const Proof& p = (*proofs_)[i];
-        if (at_start && p.when != Proof::When::start) continue;
+        const Precondition& p = (*preconditions_)[i];
+        if (at_start && p.when != Precondition::When::start) continue;
         const real grown = std::pow(pushed_, p.power), value = values_[i];
         if (p.at_least && !(value >= *p.at_least * grown))
             return fmt::format("{} is {:.4g}, not at least {:.4g}: {}", p.quantity, value, *p.at_least * grown, p.why);

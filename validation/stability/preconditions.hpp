@@ -1,4 +1,4 @@
-// Whether what should make a run hard is there: liquid in the tank, the pocket, the gap, the drop, each counted in the scene as it stands.
+// Preconditions of a stability limit: what makes a run hard is in the scene (liquid, pocket, gap, drop), counted as it stands.
 // A limit that was measured on an empty tank is no limit.
 #pragma once
 #include "sim/simulation.hpp"
@@ -9,9 +9,9 @@
 
 namespace weir::validation {
 
-/// A quantity that says how hard a run is, and what it must be there. Quantities: integrals, numbers of the step's report, and those that
-/// are counted in cells (counted()).
-struct Proof {
+/// A quantity that measures how hard a run is, and the range that it must have. Quantities: integrals, numbers of the step's report, and
+/// those that are counted in cells (counted()).
+struct Precondition {
     enum class When { start, most, end } when = When::start;  // before the first step; the largest of the run; at its end
     std::string quantity{};
     std::optional<real> at_least{}, at_most{};  // for a value of 1; they grow with this power of the value
@@ -19,8 +19,8 @@ struct Proof {
     std::string why{};
 };
 
-/// A proof as it was measured.
-struct Shown {
+/// The measured value of a precondition.
+struct MeasuredValue {
     std::string quantity{};
     real value = 0;
 };
@@ -47,19 +47,20 @@ std::optional<real> counted(const std::string& name, const Simulation& simulatio
 /// An integral, a number of the step's report, a sum of two ("kinetic_energy+potential_energy"), or what counted() knows. Throws BadInput.
 real value_of(const std::string& name, const Simulation& simulation, const StepReport& report);
 
-/// Measures the proofs of one run.
-class Hardship {
+/// Measures the preconditions of one run.
+class Preconditions {
 public:
-    Hardship(const std::vector<Proof>& proofs, real pushed) : proofs_(&proofs), pushed_(pushed), values_(proofs.size(), -infinity) {}
+    Preconditions(const std::vector<Precondition>& preconditions, real pushed)
+        : preconditions_(&preconditions), pushed_(pushed), values_(preconditions.size(), -infinity) {}
     void start(const Simulation& simulation);
     void step(const Simulation& simulation, const StepReport& report);
     void end(const Simulation& simulation, const StepReport& report);
-    std::vector<Shown> shown() const;
-    /// The first proof that does not hold, of those known by then; empty where all do. at_start: only those of the start.
+    std::vector<MeasuredValue> measured() const;
+    /// The first precondition that does not hold, of those known by then; empty where all hold. at_start: only those of the start.
     std::string missing(bool at_start) const;
 
 private:
-    const std::vector<Proof>* proofs_;
+    const std::vector<Precondition>* preconditions_;
     real pushed_;
     std::vector<real> values_;
 };
