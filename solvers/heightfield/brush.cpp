@@ -53,7 +53,7 @@ private:
             if (!s.qz.empty()) s.qz[c] += rise * brush.velocity[2];
             return rise;
         });
-        s.poured += volume;
+        s.net_inflow += volume;
         brush_forcing_->mass += s.rho * volume;
         brush_forcing_->impulse[0] += s.rho * volume * brush.velocity[0];
         if (!s.qz.empty()) brush_forcing_->impulse[2] += s.rho * volume * brush.velocity[2];
@@ -77,7 +77,7 @@ private:
             s.h[c] *= left(c, x);
             return s.h[c] - before;
         });
-        s.poured += volume;
+        s.net_inflow += volume;
         brush_forcing_->mass += s.rho * volume;
     }
 
@@ -107,7 +107,7 @@ void apply_sources_and_sinks(BrushForcing& forcing, State& s, Field& surface, re
         surface[c] = std::max(before + dt * speed * brush.weight(x), std::min(before, s.bed[c] + 0.5 * s.h[c]));
         return surface[c] - before;
     });
-    s.poured += volume;
+    s.net_inflow += volume;
     forcing.mass += s.rho * volume;
 }
 

@@ -135,7 +135,7 @@ StepReport Columns::step(real dt) {
         const auto timed = passes_.time("floats");
         floats_.after(dt, surface_, rate_);
     }
-    state_.poured += dt * through_;  // the sweep used the rates before sides and damping change them
+    state_.net_inflow += dt * through_;  // the sweep used the rates before sides and damping change them
     if (damping_ > 0) {
         const auto timed = passes_.time("effect damping");
         const real left = std::exp(-dt * damping_);
@@ -265,8 +265,8 @@ std::vector<Integral> Columns::integrals() const {
     });
     const std::string volume_unit = state_.plane.dim == 2 ? "m^2" : "m^3", per_depth = state_.plane.dim == 2 ? "/m" : "";
     std::vector<Integral> list = {{"volume", volume_unit, volume},
-                                  {"poured_volume", volume_unit, state_.poured},
-                                  {"volume_balance", volume_unit, volume - state_.poured},
+                                  {"poured_volume", volume_unit, state_.net_inflow},
+                                  {"volume_balance", volume_unit, volume - state_.net_inflow},
                                   {"potential_energy", "J" + per_depth, 0.5 * state_.rho * state_.g * raised}};
     if (brush_forcing_) geometry::sum_up(*brush_forcing_, state_.plane.dim, list);
     for (std::size_t b = 0; b < floats_.count(); ++b) {
@@ -301,7 +301,7 @@ void Columns::edited(const EditableField& field) {
             throw BadInput(fmt::format("\"{}\" at {}: the bed is at {} m, and scheme.model = \"columns\" {}", field.name, c, state_.bed[c],
                                        is_wet(c) ? "does not support drying" : "does not support wetting"));
     });
-    state_.poured += volume() - volume_before_;
+    state_.net_inflow += volume() - volume_before_;
 }
 
 void Columns::save(Checkpoint& to) const {
@@ -310,7 +310,7 @@ void Columns::save(Checkpoint& to) const {
     put_planes(to, "surface", surface_);
     put_planes(to, "rate", rate_);
     to.put_value("time", state_.time);
-    to.put_value("poured", state_.poured);
+    to.put_value("poured", state_.net_inflow);
     to.put_value("through", through_);
     to.put_value("steps", steps_);
     if (brush_forcing_) brush_forcing_->save(to);
@@ -324,7 +324,7 @@ void Columns::restore(const Checkpoint& from) {
         get_planes(from, "rate", rate_);
     }
     state_.time = from.get_value<real>("time");
-    state_.poured = from.get_value<real>("poured");
+    state_.net_inflow = from.get_value<real>("poured");
     through_ = from.get_value<real>("through");
     steps_ = from.get_value<std::int64_t>("steps");
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);

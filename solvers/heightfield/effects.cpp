@@ -100,15 +100,15 @@ public:
     void apply(State& s, real dt) override {
         const real seconds = std::min(s.time + dt, end_) - std::max(s.time, start_), depth = rate_ * std::max(0.0, seconds);
         if (depth == 0) return;
-        s.poured += s.plane.area() * depth * plane_sum(s.plane.nz, [&](int k) {
-                        real sum = 0;
-                        for (int i = 0; i < s.plane.nx; ++i) {
-                            const std::size_t c = s.plane.at(i, k);
-                            s.h[c] += depth * on_[c];
-                            sum += on_[c];
-                        }
-                        return sum;
-                    });
+        s.net_inflow += s.plane.area() * depth * plane_sum(s.plane.nz, [&](int k) {
+                            real sum = 0;
+                            for (int i = 0; i < s.plane.nx; ++i) {
+                                const std::size_t c = s.plane.at(i, k);
+                                s.h[c] += depth * on_[c];
+                                sum += on_[c];
+                            }
+                            return sum;
+                        });
     }
     std::size_t bytes() const override { return on_.bytes(); }
 

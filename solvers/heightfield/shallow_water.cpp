@@ -115,7 +115,7 @@ void ShallowWater::take_reports(real weight) {
         volume_ += r.volume * state_.plane.dz;
         rate_ = std::max(rate_, r.rate);
         clipped_ = std::max(clipped_, -r.lowest);
-        state_.poured += weight * r.through;
+        state_.net_inflow += weight * r.through;
     }
     if (!std::isfinite(volume_)) throw NumericalFailure("depth", "depth is no longer finite");
 }
@@ -162,8 +162,8 @@ std::vector<Integral> ShallowWater::integrals() const {
     const bool flat = plane.dim == 2;
     const std::string volume_unit = flat ? "m^2" : "m^3", per_depth = flat ? "/m" : "";
     std::vector<Integral> list = {{"volume", volume_unit, volume},
-                                  {"poured_volume", volume_unit, state_.poured},
-                                  {"volume_balance", volume_unit, volume - state_.poured},
+                                  {"poured_volume", volume_unit, state_.net_inflow},
+                                  {"volume_balance", volume_unit, volume - state_.net_inflow},
                                   {"kinetic_energy", "J" + per_depth, 0.5 * state_.rho * kinetic},
                                   {"potential_energy", "J" + per_depth, state_.rho * state_.g * weight},
                                   {"momentum_x", "kg m/s" + per_depth, state_.rho * sum([&](std::size_t c) { return qx[c]; })}};
@@ -194,7 +194,7 @@ void ShallowWater::edited(const EditableField&) {
         if (!qz1_.empty()) state_.qz[c] = wet * qz1_[c];
     });
     measure();
-    state_.poured += volume_ - before;
+    state_.net_inflow += volume_ - before;
 }
 
 void ShallowWater::save(Checkpoint& to) const {
@@ -205,7 +205,7 @@ void ShallowWater::save(Checkpoint& to) const {
     put_planes(to, "discharge_z", state_.qz);
     put_planes(to, "bed", state_.bed);
     to.put_value("time", state_.time);
-    to.put_value("poured", state_.poured);
+    to.put_value("poured", state_.net_inflow);
     to.put_value("volume", volume_);
     to.put_value("rate", rate_);
     to.put_value("clipped", clipped_);
@@ -220,7 +220,7 @@ void ShallowWater::restore(const Checkpoint& from) {
     get_planes(from, "bed", state_.bed);
     refresh(state_.bed, held_.ring(), rows_beside);
     state_.time = from.get_value<real>("time");
-    state_.poured = from.get_value<real>("poured");
+    state_.net_inflow = from.get_value<real>("poured");
     volume_ = from.get_value<real>("volume");
     rate_ = from.get_value<real>("rate");
     clipped_ = from.get_value<real>("clipped");

@@ -9,7 +9,7 @@
 namespace weir::particles {
 
 /// Counts are integers and the largest distance is an exact maximum, so neither depends on the order of threads.
-struct Clamps {
+struct BoundaryCorrections {
     std::int64_t count = 0;  // since the start
     real farthest = 0;       // [m]
 
@@ -23,6 +23,6 @@ struct Clamps {
 
 /// Relative to the spacing: distance of particles from walls and solids, and the smallest correction that counts. Smaller ones are
 /// rounding: single-precision positions are accurate to 6e-8 of the domain.
-inline constexpr real wall_margin = 1e-3, least_clamp = 1e-4;
+inline constexpr real wall_margin = 1e-3, least_correction = 1e-4;
 
 }  // namespace weir::particles

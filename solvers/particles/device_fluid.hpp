@@ -179,7 +179,7 @@ public:
     Memory enthalpy;                                  // where particles have heat
     Memory rests;                                     // of sorted particles that may boil: their densities relative to the liquid's
     Memory order, a, b, neighbours, list;             // sorted particles: original index, float4, their neighbours
-    Memory clamps;                                    // number of boundary corrections, and the largest distance
+    Memory corrections;                               // number of boundary corrections, and the largest distance
     Memory near_solid, terms, poses;                  // solids: sorted particles near one, their terms there; poses
     Memory state_params, wall_params, kernel_params;  // constants
     const Memory& parts() const { return parts_; }
@@ -193,7 +193,7 @@ private:
     void exclusive_sums(int count, const Memory& in, const Memory& out);
     void build_list(const CellGrid& grid);
     void grow_list(int needed);
-    void count_clamps();
+    void count_corrections();
     void reorder();
     void cross_sides();
     void take_series(const plain::WallParams& walls);
@@ -218,7 +218,7 @@ private:
     real support_ = 0;
     DeviceEffects<D> effects_;
     real speed_ = 0;
-    std::uint32_t clamps_seen_ = 0;
+    std::uint32_t corrections_seen_ = 0;
     Memory solid_series_;
     Memory warming_, by_walls_, heat_pairs_, heat_walls_, heat_states_;
     Memory shift_, vapour_, above_;

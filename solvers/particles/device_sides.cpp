@@ -20,7 +20,7 @@ void DeviceFluid<D>::add_inflow(real dt) {
     std::vector<real> enthalpies;
     emitters.emit(host_.time, dt, [&](const Vec<D>& at, const Vec<D>& velocity, real h) {
         enthalpies.push_back(h);
-        const Vec<D> kept = host_.domain.kept(at, host_.clamps);
+        const Vec<D> kept = host_.domain.kept(at, host_.corrections);
         for (std::size_t axis = 0; axis < D; ++axis) places[axis].push_back(kept[axis]), velocities[axis].push_back(velocity[axis]);
     });
     append(places, velocities, enthalpies);

@@ -108,7 +108,7 @@ void Fluid<D>::reorder(const std::vector<int>& order) {
 template <int D>
 void Fluid<D>::take_setting(const Fluid& from) {
     domain = from.domain, gravity = from.gravity, rho0 = from.rho0, mass = from.mass;
-    time = from.time, steps = from.steps, next_id = from.next_id, clamps = from.clamps;
+    time = from.time, steps = from.steps, next_id = from.next_id, corrections = from.corrections;
 }
 
 template <int D>
@@ -235,8 +235,8 @@ std::vector<Integral> Fluid<D>::integrals() const {
                     })});
     list.push_back({"max_speed", "m/s", max_speed()});
     list.push_back({"outside", "1", block_sum(n, [&](int i) { return domain.outside(position(i)) ? 1.0 : 0.0; })});
-    list.push_back({"clamped", "1", static_cast<real>(clamps.count)});
-    list.push_back({"clamp_depth", "1", clamps.farthest / domain.spacing});
+    list.push_back({"clamped", "1", static_cast<real>(corrections.count)});
+    list.push_back({"clamp_depth", "1", corrections.farthest / domain.spacing});
     list.push_back({"mean_height", "m", n ? block_sum(n, [&](int i) { return position(i)[1] - domain.lo[1]; }) / n : 0});
     list.push_back({"mean_density", "kg/m^3", n ? block_sum(n, [&](int i) { return density[static_cast<std::size_t>(i)]; }) / n : 0});
     return list;
@@ -273,7 +273,7 @@ void Fluid<D>::save(Checkpoint& to) const {
     }
     to.put("particles.clock", std::vector<real>{time, next_id});
     to.put_value("particles.steps", steps);
-    to.put_value("particles.clamps", clamps);
+    to.put_value("particles.clamps", corrections);
 }
 
 namespace {
@@ -325,7 +325,7 @@ void Fluid<D>::restore(const Checkpoint& from) {
     steps = from.get_value<std::int64_t>("particles.steps");
     Checkpoint::require_within("particles.steps", steps, 0, std::int64_t{1} << 53);
     require_whole(*this);
-    if (from.has("particles.clamps")) clamps = from.get_value<Clamps>("particles.clamps");
+    if (from.has("particles.clamps")) corrections = from.get_value<BoundaryCorrections>("particles.clamps");
     if (!domain.solids.empty()) domain.solids.set_time(time);
 }
 

@@ -53,17 +53,17 @@ void ThreadedSolver<D>::drop_ghosts() {
 }
 
 template <int D>
-void ThreadedSolver<D>::add_clamps(const Clamps& rank) {
-    fluid_.clamps.add(rank.count - clamps_before_.count, rank.farthest);
+void ThreadedSolver<D>::add_corrections(const BoundaryCorrections& rank) {
+    fluid_.corrections.add(rank.count - corrections_before_.count, rank.farthest);
 }
 
 template <int D>
-void ThreadedSolver<D>::sum_up_clamps() {
+void ThreadedSolver<D>::sum_up_corrections() {
     if (!fluid_.shared) return;
-    const std::vector<Clamps> each = of_ranks(fluid_.clamps);
-    fluid_.clamps = clamps_before_;
-    for (const Clamps& rank : each) add_clamps(rank);
-    clamps_before_ = fluid_.clamps;
+    const std::vector<BoundaryCorrections> each = of_ranks(fluid_.corrections);
+    fluid_.corrections = corrections_before_;
+    for (const BoundaryCorrections& rank : each) add_corrections(rank);
+    corrections_before_ = fluid_.corrections;
 }
 
 template <int D>
@@ -90,16 +90,16 @@ template <int D>
 void ThreadedSolver<D>::tell_of_all(StepEnd& end, const SumAndMost& excess) {
     struct Told {
         SumAndMost excess;
-        Clamps clamps;
+        BoundaryCorrections corrections;
         real speed, fastest, acceleration;
         typename Fluid<D>::Quantity broken;
     };
-    const std::vector<Told> ranks = of_ranks(Told{excess, fluid_.clamps, end.speed, fastest_, end.acceleration, broken_});
-    fluid_.clamps = clamps_before_;
+    const std::vector<Told> ranks = of_ranks(Told{excess, fluid_.corrections, end.speed, fastest_, end.acceleration, broken_});
+    fluid_.corrections = corrections_before_;
     SumAndMost all;
     for (const Told& rank : ranks) {
         all.add(rank.excess);
-        add_clamps(rank.clamps);
+        add_corrections(rank.corrections);
         end.speed = std::max(end.speed, rank.speed), fastest_ = std::max(fastest_, rank.fastest);
         end.acceleration = std::max(end.acceleration, rank.acceleration);
         broken_ = std::max(broken_, rank.broken);

@@ -30,7 +30,7 @@ protected:
         this->forget_whole();
         this->emitters_.apply(fluid_, dt);
         if (sources_) sources_->apply_sources_and_sinks(fluid_);
-        clamps_before_ = fluid_.clamps;  // emitters are replicated on all ranks
+        corrections_before_ = fluid_.corrections;  // emitters are replicated on all ranks
     }
     /// Finds the pairs at these positions, closer than the radius [m]. In parallel particles migrate first, and until drop_ghosts() the
     /// state also contains ghost particles, for which the positions and these arrays of the state are valid.
@@ -46,7 +46,7 @@ protected:
     };
     StepEnd end_step(const SumAndMost& excess, real acceleration);
     /// In parallel, sums the boundary corrections over the ranks.
-    void sum_up_clamps();
+    void sum_up_corrections();
     real speed() const final;
     /// Conduction at the positions of the step's passes, which are those of the pairs.
     void conduct(real dt) final;
@@ -78,11 +78,11 @@ private:
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
     std::vector<float> rest_;
     void tell_of_all(StepEnd& end, const SumAndMost& excess);
-    void add_clamps(const Clamps& rank);
+    void add_corrections(const BoundaryCorrections& rank);
 
     Migration migration_;
     ParticleExchange::Arrays arrays_;
-    Clamps clamps_before_;
+    BoundaryCorrections corrections_before_;
     typename Fluid<D>::Quantity broken_{};
     mutable real fastest_ = not_applicable;  // in parallel: over all particles now; unknown after a restart [m/s]
 };

@@ -111,7 +111,7 @@ void DevicePbfSolver<D>::find_lambdas() {
 template <int D>
 void DevicePbfSolver<D>::correct() {
     const auto& f = fluid_;
-    fluid_.run("correct", {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.rests, f.clamps, f.b,
+    fluid_.run("correct", {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.rests, f.corrections, f.b,
                            f.neighbours, f.list, f.a});
     if (carried_dt_ > 0)
         push_bodies();

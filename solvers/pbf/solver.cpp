@@ -71,7 +71,7 @@ void PbfSolver<D>::predict(real dt) {
     if (!fluid_.domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
     for (auto& axis : x_star_) axis.resize(fluid_.id.size());
     parallel_for(0, fluid_.count(), [&](int i) {
-        particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
+        particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.corrections));
     });
     if (carried_dt_ > 0) push_bodies_ahead();
     if (!this->ice_moves()) return;
@@ -161,14 +161,14 @@ void PbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const auto run = options_.pressure_k > 0 ? table.correct_with_pressure : table.correct;
-    particles::ClampTally tally{.least2 = static_cast<float>(std::pow(particles::least_clamp * fluid_.domain.spacing, 2))};
+    particles::CorrectionTally tally{.least2 = static_cast<float>(std::pow(particles::least_correction * fluid_.domain.spacing, 2))};
     PbfPass job = pass(pairs_.b(), pairs_.a(), solids_.there());  // b has the values of a
-    job.clamps = &tally;
+    job.corrections = &tally;
     job.order = pairs_.cells().order().data();
     job.particles = pairs_.particles();
     job.own_begin = pairs_.shares().own().begin, job.own_end = pairs_.shares().own().end;
     pairs_.list().each_chunk([&](const ListChunk& chunk) { run(job, chunk); });
-    if (tally.count > 0) fluid_.clamps.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
+    if (tally.count > 0) fluid_.corrections.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
 }
 
 /// Frozen particles keep their position of the neighbour search, or move with their piece.
@@ -197,7 +197,7 @@ void PbfSolver<D>::collide() {
     if (carried_dt_ > 0)
         push_bodies();
     else
-        solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
+        solids_.push_out(pairs_, pairs_.a(), fluid_.corrections);
     keep_frozen_positions();
     pairs_.refresh(pairs_.a(), true);
 }
@@ -232,7 +232,7 @@ void PbfSolver<D>::push_bodies() {
     float* x = pairs_.a();
     before_push_.clear();
     for (const int k : solids_.near()) before_push_.insert(before_push_.end(), x + 4 * k, x + 4 * k + D);
-    solids_.push_out(pairs_, x, fluid_.clamps);
+    solids_.push_out(pairs_, x, fluid_.corrections);
     push_on(*bodies_, fluid_.domain, solids_.near(), before_push_.data(), x, carried_dt_);
 }
 
@@ -271,7 +271,7 @@ void PbfSolver<D>::update(real dt, real slow) {
     if (this->ice_moves() && dt > 0) this->ice_->finish_motion(fluid_, slow);
     if (dt > 0) return;
     this->drop_ghosts();  // the last use of ghost particles
-    this->sum_up_clamps();
+    this->sum_up_corrections();
 }
 
 /// Over this rank's own particles.

@@ -4,8 +4,8 @@
 
 #include "core/error.hpp"
 #include "core/slabs.hpp"
+#include "geometry/liquid_fraction.hpp"
 #include "geometry/shape.hpp"
-#include "geometry/wet_part.hpp"
 #include "reconstruction/contour.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
@@ -96,7 +96,7 @@ std::vector<double> copy_cells_of(const std::vector<double>& n, double target, C
 }
 
 template <int D>
-double wet_part_of(const scene::Scene& scene) {
+double liquid_fraction_of(const scene::Scene& scene) {
     const auto tables = [&](const char* list) { return scene.has(list) ? scene.root().tables(list) : std::vector<scene::Table>{}; };
     const auto liquid = geometry::make_shapes<D>(tables("liquid")), solids = geometry::make_shapes<D>(tables("solids"));
     const Vec<D> origin = scene.vec<D>("grid.origin"), size = scene.vec<D>("grid.size");
@@ -232,7 +232,7 @@ double part_of_liquid(const scene::Scene& scene, const std::vector<scene::Solver
             {"liquid", pool_text(root.numbers("grid.origin"), root.numbers("grid.size"), root.numbers("grid.cells"), part)});
         return hold(scene::parse(scene.source(), scene.file(), scene::schemas_of(kinds), overrides), kinds).bytes;
     };
-    const double wet = wet_part(scene), all = pool(wet);
+    const double wet = liquid_fraction(scene), all = pool(wet);
     return std::clamp(2 * (all - pool(0.5 * wet)) / all, 0.0, 1.0);
 }
 
@@ -252,7 +252,7 @@ std::vector<EstimatedField> fields_of(const FieldSet& set, const std::vector<dou
 
 }  // namespace
 
-double wet_part(const scene::Scene& scene) { return scene.dim() == 2 ? wet_part_of<2>(scene) : wet_part_of<3>(scene); }
+double liquid_fraction(const scene::Scene& scene) { return scene.dim() == 2 ? liquid_fraction_of<2>(scene) : liquid_fraction_of<3>(scene); }
 
 scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double cells, Copy how) {
     const auto n = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size");
@@ -278,10 +278,10 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
     overrides.push_back({"grid.size", list_text(box)});
     const auto parsed = [&] { return scene::parse(scene.source(), scene.file(), schemas, overrides); };
     if (!scene.has("liquid") || scene.root().tables("liquid").empty()) return parsed();
-    const double wet =
-        how == Copy::similar ? wet_part(scene) * product(n) / product(copy) / std::pow(coarser, scene.dim()) : wet_part(scene);
+    const double wet = how == Copy::similar ? liquid_fraction(scene) * product(n) / product(copy) / std::pow(coarser, scene.dim())
+                                            : liquid_fraction(scene);
     const scene::Scene as_it_is = parsed();
-    if (std::abs(wet_part(as_it_is) - wet) <= (how == Copy::similar ? corrected : alike) * wet) return as_it_is;
+    if (std::abs(liquid_fraction(as_it_is) - wet) <= (how == Copy::similar ? corrected : alike) * wet) return as_it_is;
     overrides.push_back({"liquid", pool_text(scene.root().numbers("grid.origin"), box, copy, std::min(1.0, wet))});
     return parsed();
 }
@@ -299,7 +299,7 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const std::vector<scen
     const auto cells = scene.root().numbers("grid.cells");
     const bool small = product(cells) <= copy_cells;
     MemoryEstimate f{.cells = product(cells), .particle_solver = consists_of_particles(scene, kinds)};
-    const double wet = f.particle_solver ? wet_part(scene) : 0;
+    const double wet = f.particle_solver ? liquid_fraction(scene) : 0;
     const double enough = f.particle_solver && wet > 0 ? particles_of_copy / wet : copy_cells;
     const double least = product(cells) / std::pow(widest_copy, static_cast<double>(cells.size() - 1));
     const bool by_columns = kind_named(scene.solver(), kinds).schema.whole_columns && least <= 8 * copy_cells;

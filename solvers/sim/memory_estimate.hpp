@@ -44,7 +44,7 @@ enum class Copy { similar, like_rows, like_columns };
 scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double cells, Copy how);
 
 /// The liquid volume fraction: the part of the domain's cells whose centres lie in liquid and outside solids, from a sample.
-double wet_part(const scene::Scene& scene);
+double liquid_fraction(const scene::Scene& scene);
 
 /// Memory that can be allocated now without swapping [bytes].
 double available_memory();

@@ -174,7 +174,7 @@ void DeviceSphSolver<D>::advance_densities(real dt) {
 template <int D>
 void DeviceSphSolver<D>::drift(real dt) {
     fluid_.pass_time(dt);
-    fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.clamps, fluid_.x, fluid_.v});
+    fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.corrections, fluid_.x, fluid_.v});
     fluid_.carry_ice(dt);
 }
 

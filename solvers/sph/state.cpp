@@ -111,7 +111,7 @@ void advance_time(particles::Fluid<D>& fluid, real dt) {
 template <int D>
 void drift(particles::Fluid<D>& fluid, int i, real dt) {
     using particles::Fluid;
-    const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = fluid.domain.kept(free, fluid.clamps);
+    const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = fluid.domain.kept(free, fluid.corrections);
     Vec<D> kept = u;
     for (int a = 0; a < D; ++a)
         if (x[a] != free[a]) kept[a] = (x[a] - fluid.position(i)[a]) / dt;

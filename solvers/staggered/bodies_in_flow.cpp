@@ -80,7 +80,7 @@ BodiesInFlow<D>::BodiesInFlow(const scene::Scene& scene)
 template <int D>
 void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solids) {
     find_cuts(s, solids);
-    for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].wet = wet_part(s, i);
+    for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].wet = liquid_fraction(s, i);
     rigid::Surroundings<D> around = bodies_.surroundings(solids.solids());
     around.reach = 1e-3 * norm(h_);
     contacts_.find(bodies_.all(), around);
@@ -328,7 +328,7 @@ Twist<D> BodiesInFlow<D>::force(const MacState<D>& s, std::size_t body) const {
 
 /// The liquid volume fraction of the body's surface as resolved by the cells: the part of Σ |D| in fluid cells.
 template <int D>
-real BodiesInFlow<D>::wet_part(const MacState<D>& s, std::size_t body) const {
+real BodiesInFlow<D>::liquid_fraction(const MacState<D>& s, std::size_t body) const {
     real all = 0, wet = 0;
     for (const Cut& c : cuts_[body])
         for (std::size_t k = 0; k < D; ++k) {
@@ -425,7 +425,7 @@ template <int D>
 void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
         Body<D>& body = bodies_[i];
-        body.wet = wet ? wet_part(s, i) : 0;
+        body.wet = wet ? liquid_fraction(s, i) : 0;
         masses_[i] = mass_of(i);
         added_.see(i, body.wet > 0 ? mass_of_wet_surface(s, i) : rigid::Block<D>{});
         const Twist<D> heavy = weight(i);

@@ -92,7 +92,7 @@ private:
     void scatter(std::size_t body, const rigid::Twist<D>& velocity, real scale, Grid<real, D>& to) const;
     rigid::Twist<D> push(std::size_t body, const Grid<real, D>& p) const;
     rigid::Twist<D> force(const MacState<D>& s, std::size_t body) const;
-    real wet_part(const MacState<D>& s, std::size_t body) const;
+    real liquid_fraction(const MacState<D>& s, std::size_t body) const;
     rigid::Twist<D> weight(std::size_t body) const;
     rigid::Block<D> mass_of(std::size_t body) const;
     rigid::Block<D> mass_of_wet_surface(const MacState<D>& s, std::size_t body) const;

@@ -209,7 +209,7 @@ void Water<D>::forces(real dt) {
 template <int D>
 poisson::Report Water<D>::project_once(real dt, real kick, bool again) {
     const auto timed = passes_.time("project");
-    impose_emitters(dt, &Emitter<D>::Face::pours);
+    impose_emitters(dt, &Emitter<D>::Face::emits);
     const Grid<real, D>* curvature = options_.sigma > 0 ? &curvature_ : nullptr;
     if (again) return pressure_.project_again(state_, surface_, kick, options_.sigma, curvature);
     return pressure_.project(state_, surface_, kick, options_.sigma, curvature, bodies_.get(), &solids_);

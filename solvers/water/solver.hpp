@@ -124,7 +124,7 @@ private:
     void apply_sources_and_sinks(real dt);
     void redistribute_markers();
     bool fill_cell(const Index<D>& I, int wanted);
-    std::int64_t pour(const Emitter<D>& emitter, real dt);
+    std::int64_t emit(const Emitter<D>& emitter, real dt);
     bool is_free(const Vec<D>& x) const;
     void impose_emitters(real dt, real Emitter<D>::Face::*speed);
     void carry_emitters_velocity(real dt);

@@ -1,6 +1,6 @@
 // Estimate of what a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of surface/, pass by pass.
 #include "poisson/traffic.hpp"
-#include "geometry/wet_part.hpp"
+#include "geometry/liquid_fraction.hpp"
 #include "staggered/own_planes.hpp"
 #include "surface/traffic.hpp"
 #include "water/solver.hpp"
@@ -86,7 +86,7 @@ private:
         const int numbers = D + (transfer_ == "grid" ? 0 : D) + (transfer_ == "apic" ? D * D : 0);
         const auto bytes_in = [&](int at) {
             const double markers =
-                geometry::wet_part_of_plane<D>(scene_, at) * static_cast<double>(cells_.bytes / sizeof(real)) * Markers<D>::per_cell;
+                geometry::liquid_fraction_of_plane<D>(scene_, at) * static_cast<double>(cells_.bytes / sizeof(real)) * Markers<D>::per_cell;
             return static_cast<std::size_t>(std::llround(markers)) * static_cast<std::size_t>(numbers) * sizeof(real);
         };
         const int first = tally_.cut().begin(rank), last = tally_.cut().end(rank, n_[D - 1]) - 1;
@@ -138,7 +138,7 @@ private:
     poisson::Runs runs() const {
         const int first = tally_.cut().begin(tally_.rank()), end = tally_.cut().end(tally_.rank(), n_[D - 1]);
         const int rows = D == 2 ? 1 : n_[1];
-        const auto wet = [&](int at) { return std::llround(geometry::wet_part_of_plane<D>(scene_, at) * rows); };
+        const auto wet = [&](int at) { return std::llround(geometry::liquid_fraction_of_plane<D>(scene_, at) * rows); };
         poisson::Runs runs;
         for (int at = first; at < end; ++at) runs.own += static_cast<std::size_t>(wet(at));
         if (tally_.rank() > 0) runs.below = static_cast<std::size_t>(wet(first - 1));

@@ -278,7 +278,7 @@ TEST("a target is cut to a cell, or a spacing, a step") {
     }
 }
 
-TEST_IN_2D_AND_3D("what is poured is there, a drain takes it out, and the ledger has both") {
+TEST_IN_2D_AND_3D("what is poured is there, a drain takes it out, and the balance includes both") {
     for (const char* solver : {"mac_water", "pbf", "sph"}) {
         const real dt = 0.002;
         const std::string frames = keyframe(0, "pour", list<D>(0.2, 0.8, 0.5), 0.15, "velocity = " + list<D>(0, -0.5, 0)) + ", " +

@@ -109,9 +109,9 @@ TEST("liquid that a small copy would not see is estimated: a film of two cells, 
 
 TEST("the part of the domain that liquid fills is counted by cell centres, outside solids") {
     const auto part = [](const std::string& more, const char* cells) {
-        return sim::wet_part(scene::parse(std::string("solver = \"mac_water\"\ndim = 3\ngrid = { cells = ") + cells +
-                                              ", size = [1.0, 1.0, 1.0] }\ntime = { end = 1.0 }\n" + more,
-                                          "scene.toml", sim::schemas()));
+        return sim::liquid_fraction(scene::parse(std::string("solver = \"mac_water\"\ndim = 3\ngrid = { cells = ") + cells +
+                                                     ", size = [1.0, 1.0, 1.0] }\ntime = { end = 1.0 }\n" + more,
+                                                 "scene.toml", sim::schemas()));
     };
     const std::string half = "liquid = [ { shape = \"box\", min = [0, 0, 0], max = [1, 0.5, 1] } ]\n";
     const std::string solid = "solids = [ { shape = \"box\", min = [0.25, 0.25, 0.25], max = [0.75, 0.75, 0.75] } ]\n";

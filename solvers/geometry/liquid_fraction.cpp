@@ -1,4 +1,4 @@
-#include "geometry/wet_part.hpp"
+#include "geometry/liquid_fraction.hpp"
 
 #include "geometry/shape.hpp"
 
@@ -7,7 +7,7 @@
 
 namespace weir::geometry {
 
-namespace wet_part {
+namespace liquid_fraction {
 
 /// Liquid and solids of a scene, sampled at cell centres.
 template <int D>
@@ -71,11 +71,11 @@ private:
     std::vector<ShapePtr<D>> liquid_, solids_;
 };
 
-}  // namespace wet_part
+}  // namespace liquid_fraction
 
 template <int D>
-real wet_part_of_plane(const scene::Scene& scene, int plane) {
-    const wet_part::Look<D> look(scene, D == 2 ? 65536 : 256);
+real liquid_fraction_of_plane(const scene::Scene& scene, int plane) {
+    const liquid_fraction::Look<D> look(scene, D == 2 ? 65536 : 256);
     int wet = 0, all = 0;
     look.for_each_of_plane(plane, [&](const Vec<D>& x) { wet += look.in_liquid(x) && !look.in_solids(x) ? 1 : 0, ++all; });
     return static_cast<real>(wet) / all;
@@ -83,7 +83,7 @@ real wet_part_of_plane(const scene::Scene& scene, int plane) {
 
 template <int D>
 std::vector<PlaneOfLiquid> liquid_in_planes(const scene::Scene& scene, real beside) {
-    const wet_part::Look<D> look(scene, D == 2 ? 4096 : 64);
+    const liquid_fraction::Look<D> look(scene, D == 2 ? 4096 : 64);
     std::vector<PlaneOfLiquid> planes(static_cast<std::size_t>(look.planes()));
     for (int plane = 0; plane < look.planes(); ++plane) {
         PlaneOfLiquid& of_plane = planes[static_cast<std::size_t>(plane)];
@@ -96,8 +96,8 @@ std::vector<PlaneOfLiquid> liquid_in_planes(const scene::Scene& scene, real besi
     return planes;
 }
 
-#define WEIR_INSTANTIATE(D)                                       \
-    template real wet_part_of_plane<D>(const scene::Scene&, int); \
+#define WEIR_INSTANTIATE(D)                                              \
+    template real liquid_fraction_of_plane<D>(const scene::Scene&, int); \
     template std::vector<PlaneOfLiquid> liquid_in_planes<D>(const scene::Scene&, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -10,7 +10,7 @@ namespace weir::geometry {
 /// The fraction of the cells of a plane of the slowest axis whose centres lie in liquid and outside solids, from at most some ten thousand
 /// evenly spread cells.
 template <int D>
-real wet_part_of_plane(const scene::Scene& scene, int plane);
+real liquid_fraction_of_plane(const scene::Scene& scene, int plane);
 
 /// Number of liquid cells of a plane of the slowest axis, and of cells near its surface on either side.
 struct PlaneOfLiquid {
