@@ -6,7 +6,7 @@ namespace weir::app {
 /// 128 + the first signal, as shells expect: 130 after Ctrl-C, 143 after SIGTERM.
 int exit_interrupted();
 
-/// From here on SIGINT and SIGTERM are counted; a file that grows past a limit is an error of its write, not a signal. Over ranks they
+/// From here on SIGINT and SIGTERM are counted; a file that grows past a limit is an error of its write, not a signal. In parallel they
 /// count twice, since mpirun gives its processes little time after it was interrupted itself; SIGUSR1 counts once.
 void catch_interrupts(bool in_parallel = false);
 int interruptions();

@@ -137,8 +137,8 @@ double memory_for_all(const scene::Scene& scene) {
     return available / (1 + ranks * sim::planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
 
-/// Writes everything that a run leaves behind, and shows how it goes. Over ranks all write frames, and the first the rest; what is looked
-/// at all look at.
+/// Writes everything that a run leaves behind, and shows how it goes. In parallel all ranks write frames, and the first the rest; what is
+/// looked at all look at.
 class Recorder final : public sim::Watcher {
 public:
     /// checkpoint: what was read of the one that is continued [bytes]; 0: none.

@@ -62,7 +62,7 @@ void Window::on_move() {
 void Window::on_wheel_forward() { interactor_->GetControlKey() ? zoom(1.1) : resize_brush(1.15); }
 void Window::on_wheel_backward() { interactor_->GetControlKey() ? zoom(1 / 1.1) : resize_brush(1 / 1.15); }
 
-/// The camera turns about the middle of the domain; over a flat scene it glides.
+/// The camera turns about the middle of the domain; over a flat scene it translates.
 void Window::turn_camera(int dx, int dy) {
     vtkCamera* camera = scenery_.renderer()->GetActiveCamera();
     const int* size = window_->GetSize();

@@ -139,7 +139,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
     for (int k = 0; k < (slow ? std::min(2, choice.repeat) : choice.repeat); ++k) {
         if (!(slow && k > 0)) method->setup(problem.A);
         p.fill(0);
-        slabs().largest(0);  // nobody begins before all are here
+        slabs().largest(0);  // barrier
         try {
             const OwnPlanes own(cut);
             const bool shares = method->shares_planes();  // of a cut that is there: so asked after it

@@ -120,7 +120,7 @@ void Water<D>::apply_sources_and_sinks(real dt) {
 template <int D>
 void Water<D>::apply_brush_sources() {
     const auto brush = brush_forcing_->at<D>(state_.time);
-    const bool emits = brush.kind == BrushKind::emit;
+    const bool emits = brush.kind == BrushKind::pour;
     if (!emits && brush.kind != BrushKind::drain) return;
     const std::size_t all = markers_.count();
     if (!emits && all == 0) return;

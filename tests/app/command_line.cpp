@@ -57,7 +57,7 @@ TEST("a bad --set is refused with the key that was meant, and nothing is written
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
-TEST("--backend runs particles on the reference; what it has not got, and an unknown name, are refused with what is allowed") {
+TEST("--backend runs particles on the reference; what it lacks, and an unknown name, are refused with what is allowed") {
     const std::string dam = std::string(WEIR_SOURCE_DIR) + "/tests/app/scenes/dam.toml";
     TemporaryFolder folder;
     const auto run = [&](std::vector<std::string> more) {
@@ -102,7 +102,7 @@ TEST("--explain tells what was called for, what was built and what was left out,
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
-TEST("bodies in a fluid whose density nobody named are remarked by a run and by --explain, and no others") {
+TEST("bodies in a fluid without a density in the scene are remarked by a run and by --explain, and no others") {
     TemporaryFolder folder;
     const std::string water = std::string(WEIR_SOURCE_DIR) + "/cases/floating_bodies/scene.toml";
     const auto said = [&](const std::string& density, const char* how) {

@@ -41,7 +41,7 @@ public:
 
     scene::Scene scene() const { return scene::read(folder_.path() / "scene.toml", sim::schemas()); }
 
-    /// Over so many ranks, up to a time [s].
+    /// With that number of ranks, up to a time [s].
     Run run(int ranks, double end) const {
         const auto out = folder_.path() / fmt::format("out-{}-{}", ranks, end);
         const std::string command = fmt::format(
@@ -162,8 +162,8 @@ TEST("mac_water: the same in 3D with a shared pressure, for every transfer") {
                        std::string(transfer) == "flip" ? std::vector<int>{2, 3} : std::vector<int>{3}, {1e-4, 3, 6});
 }
 
-// Friction of a liquid that is stirred, so that it takes iterations, and not so thick that it takes turns with the pressure, of which the
-// formula misses some messages; slowly, so that no marker crosses a cut: it moves by less than 1e-6 of a cell.
+// Friction of a liquid that is stirred, so that it takes iterations, and not so thick that it needs partitioned coupling iterations with
+// the pressure, of which the formula misses some messages; slowly, so that no marker crosses a cut: it moves by less than 1e-6 of a cell.
 TEST("mac_water: viscous liquid sends what the formula says, of as many iterations as friction took") {
     expect_as_told(
         pool +
@@ -230,7 +230,7 @@ TEST("heightfield: both models send what the formula says, with open and periodi
     expect_as_told(field + ring + down + "scheme.model = \"columns\"\n", {2, 3}, {1e-3, 5, 40});
 }
 
-// Two messages a step are the loop's. Of a row nobody has a part of his own.
+// The loop sends two messages per step. A single row is not distributed.
 TEST("heightfield in 2D, which every rank moves, sends what the loop of a run sends") {
     const std::string row =
         "solver = \"heightfield\"\ndim = 2\ngrid = { cells = [30, 1], size = [3.0, 1.0] }\ntime = { end = 0.3, max_dt = 1e-3 }\n"
@@ -354,7 +354,7 @@ TEST("cost --plan --ranks prints the formula's numbers, the constants with their
     EXPECT_NE(explanation.find("through the shared memory of this machine, measured now"), std::string::npos);
 }
 
-TEST("what cannot run over so many ranks is refused by a plan as by the run, with the key and what is allowed") {
+TEST("what cannot run with that number of ranks is refused by a plan as by the run, with the key and what is allowed") {
     const test::TemporaryFolder folder;
     const std::string file = folder.path() / "scene.toml";
     std::ofstream(file) << pool << "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\n"
@@ -390,7 +390,7 @@ TEST("the model: rounds of neighbours take one latency, those of all the logarit
     EXPECT_DOUBLE_EQ(validation::model_step(1e-3, sent, 1, {1e-6, 1e9, ""}).efficiency(), 1);
     const validation::Link link = validation::measure_link();
     EXPECT_GT(link.latency, 1e-8);  // a cache line does not go to another processor and back in less than 20 ns
-    EXPECT_LT(link.latency, 1e-2);  // a processor that is shared changes hands in milliseconds
+    EXPECT_LT(link.latency, 1e-2);  // a shared processor switches processes within milliseconds
     EXPECT_GT(link.bandwidth, 1e7);
     EXPECT_LT(link.bandwidth, 1e12);
 }

@@ -146,7 +146,7 @@ inline void on_ranks(int count, const std::function<void()>& body, bool poisons 
             processes.push_back(process);
             continue;
         }
-        alarm(120);  // whoever waits for a rank that has ended otherwise
+        alarm(120);  // ends a rank that waits for one that has ended
         close_all_but(r);
         set_threads(1);
         set_slabs(std::make_unique<ForkedSlabs>(static_cast<int>(r), sockets[r], poisons));

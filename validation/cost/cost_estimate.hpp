@@ -1,6 +1,6 @@
 // What a scene will cost, before it runs and without building it: memory from small copies of it (sim/memory_estimate.hpp), milliseconds
-// from rates that coarser copies show on this machine now, a number of steps from the lengths that their steps had. Blind to what comes
-// later in a run: it speaks of the scene as it begins.
+// from rates that coarser copies show on this machine now, a number of steps from the lengths that their steps had. Not covered: what comes
+// later in a run.
 #pragma once
 #include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
@@ -20,7 +20,7 @@ struct Rates {
     double least_dt = 0, most_dt = 0;
     double iterations = 0;  // of a step's solve: the mean
     double viscous_iterations = 0;
-    double most_cfl = 0;  // cells that anything crosses in a step; 0 where nobody says
+    double most_cfl = 0;  // cells that anything crosses in a step; 0 where unknown
 };
 
 struct CostEstimate {

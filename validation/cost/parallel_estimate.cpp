@@ -52,7 +52,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
     _exit(0);
 }
 
-/// While it lives, slabs() are those of a rank that exchanges nothing: for whoever asks how many there are.
+/// Scope in which slabs() are those of a rank that exchanges nothing: for code that reads the number of ranks.
 class DryRun {
 public:
     DryRun(int rank, int ranks) { set_slabs(std::make_unique<Slabs>(rank, ranks)); }
@@ -70,7 +70,7 @@ RankOf one_between(const scene::Scene& scene, const scene::SolverKind& kind, int
     return of;
 }
 
-/// As many as everybody has, and those that are read of neighbours: so far beyond a cut as a kernel reaches, of all planes.
+/// An equal part, and the ghost particles within a kernel's reach of the subdomain boundaries, over all planes.
 double part_of_particles(const scene::Scene& scene, int rank, int ranks) {
     const double cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
     return std::min(1.0, 1.0 / ranks + cuts * scene.number("scheme.support") / planes_of_scene(scene));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int values_of_axis = 6;  // from the low end of an axis to its high end
 
-/// What there is no value of before the first step.
+/// Returns whether a quantity has no value before the first step.
 bool of_a_step(const std::string& series) {
     return series == "divergence" || series == "density_error" || series == "dt" || series == "cfl" || series == "fastest";
 }

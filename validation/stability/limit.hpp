@@ -102,7 +102,7 @@ struct Limit {
     int runs = 0;
     double seconds = 0;
     bool guarded() const { return !stress.guaranteed || (last_stable && *last_stable >= *stress.guaranteed); }
-    /// What speaks against the axis itself: it ends before anything breaks and nobody says why, it breaks though that was ruled out,
+    /// What speaks against the axis itself: it ends before anything breaks without a reason, it breaks though that was ruled out,
     /// another kind of axis breaks, or what is listed as not reached holds. Empty where nothing does.
     std::string doubt() const;
     bool passes() const { return guarded() && doubt().empty(); }

@@ -53,7 +53,7 @@ std::set<int> wanted(const Cut& cut, int rank, int count, int ghost_planes, bool
     return planes;
 }
 
-TEST("what all ranks together send to one are the planes beyond its cuts, each once, from its owner; cells and faces, around a ring too") {
+TEST("what all ranks together send to one are its ghost planes, each once, from its owner; cells and faces, around a ring too") {
     for (const int n : {4, 9, 16, 24, 33})
         for (const int ranks : {2, 3, 4})
             for (const int faces : {0, 1})
@@ -101,7 +101,7 @@ public:
     }
 };
 
-TEST("in parallel a loop does its own planes, and a sum adds everybody's in the order of the planes") {
+TEST("in parallel a loop does its own planes, and a sum adds those of all ranks in the order of the planes") {
     set_slabs(std::make_unique<Echo>());
     {
         const Cut cut = cut_of(16, 2);

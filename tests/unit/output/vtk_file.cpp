@@ -140,11 +140,11 @@ TEST("what is not a number, numbers beyond all, and none have the extremes that 
         field.fields.fields[0].data = {field.values, field.values, field.values};
         expect_as_vtk(field.fields, {}, {});
     }
-    FieldSet nobody;
+    FieldSet empty;
     const std::vector<real> none;
-    nobody.grid = Field(1, 1).fields.grid;
-    nobody.fields = {{"position", "m", Where::particle, "nobody", {none, none}}, {"mass", "kg", Where::particle, "nobody", {none}}};
-    expect_as_vtk(nobody, {}, {"nobody"});
+    empty.grid = Field(1, 1).fields.grid;
+    empty.fields = {{"position", "m", Where::particle, "none", {none, none}}, {"mass", "kg", Where::particle, "none", {none}}};
+    expect_as_vtk(empty, {}, {"none"});
 }
 
 TEST("in parallel the file has the bytes of one process, wherever its blocks are cut, and by a part that is smaller than a block") {
@@ -158,7 +158,7 @@ TEST("in parallel the file has the bytes of one process, wherever its blocks are
             test::on_ranks(cut.ranks(), [&] {
                 const auto first = static_cast<std::size_t>(700 * cut.begin(slabs().rank())),
                            last = static_cast<std::size_t>(700 * cut.end(slabs().rank(), 500));
-                Field own = field;  // of what others have nobody may read
+                Field own = field;  // no rank may read the data of others
                 for (std::size_t i = 0; i < own.values.size(); ++i)
                     if (i < first || i >= last) own.values[i] = NAN;
                 own.fields.fields[0].data = {own.values};

@@ -1,5 +1,6 @@
-// Particles that change hands between ranks, against the definition: whoever owns the cell where a particle stands owns it, with all that
-// the state knows of it, and it is shown to those who read that cell or one of an image of it. Each rank is a process of its own.
+// Particles that migrate between ranks, against the definition: the rank that owns the cell where a particle stands owns it, with all that
+// the state knows of it, and it is a ghost particle of the ranks that read that cell or one of an image of it. Each rank is a process of
+// its own.
 #include "particles/migration.hpp"
 #include "core/error.hpp"
 #include "particles/pairs.hpp"
@@ -68,7 +69,7 @@ struct State {
         for (auto& array : numbers) list.push_back(&array);
         return list;
     }
-    /// As a step does: guests are dismissed, own ones move, and all change hands.
+    /// As a step does: ghosts are dropped, own ones move, and all migrate.
     void follow(const Cloud& cloud) {
         for (auto& array : numbers)
             if (migration.total() > 0) array.resize(static_cast<std::size_t>(migration.own()));
@@ -107,7 +108,7 @@ void expect_as_defined(const Cloud& cloud, State& state) {
         const auto at = static_cast<std::size_t>(k), i = static_cast<std::size_t>(state.who(k));
         for (std::size_t a = 0; a < static_cast<std::size_t>(cloud.dim); ++a) ASSERT_EQ(state.numbers[a][at], cloud.x[a][i]);
         ASSERT_EQ(state.numbers[state.numbers.size() - 2][at], State::shown + state.who(k));
-        const real kept = state.numbers.back()[at];  // of guests nobody has it, and here it is poisoned
+        const real kept = state.numbers.back()[at];  // ghosts lack it, and here it is poisoned
         ASSERT_TRUE(k < state.migration.own() ? kept == State::kept + state.who(k) : std::isnan(kept));
     }
     const std::vector<int> counts = of_ranks(state.migration.own());
@@ -142,7 +143,7 @@ TEST(
                     true);
 }
 
-TEST("a particle goes to a neighbour below or above, to a rank that is none, and through a side that repeats, and nobody else moves") {
+TEST("a particle goes to a neighbour below or above, to a rank that is none, and through a side that repeats, and no other moves") {
     test::on_ranks(
         4,
         [] {

@@ -1,5 +1,5 @@
-// Surfaces that ranks make together: point for point and triangle for triangle those of one process, wherever planes are cut and whoever
-// holds which particles.
+// Surfaces that ranks make together: point for point and triangle for triangle those of one process, wherever planes are cut and whichever
+// rank holds which particles.
 #include "core/slabs.hpp"
 #include "liquids.hpp"
 #include "support/forked_ranks.hpp"
@@ -94,7 +94,7 @@ Liquid tank(int n, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<real> at(0.0, real(n));
     for (int i = 0; i < 3 * n; ++i) list.push_back({{at(random), at(random), at(random)}});
-    std::shuffle(list.begin(), list.end(), random);  // whoever holds them, they stand anywhere
+    std::shuffle(list.begin(), list.end(), random);  // on any rank, they stand anywhere
     Liquid all;
     all.domain = n;
     for (const Vec<3>& x : list) all.put(x);
@@ -185,7 +185,7 @@ struct Water {
     std::size_t plane(const std::array<int, 3>& count) const {
         return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(dim == 2 ? 1 : count[1]);
     }
-    /// What nobody has brought to this rank is not a number.
+    /// Stale ghosts of this rank are not numbers.
     void forget(const Cut& cut) {
         const int last = n[static_cast<std::size_t>(dim - 1)], rank = slabs().rank();
         const auto keep = [](std::vector<real>& list, std::size_t per, int begin, int end) {

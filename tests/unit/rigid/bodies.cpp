@@ -37,7 +37,7 @@ TEST("mass and moments of inertia are those of the textbook") {
     EXPECT_NEAR(flat[0].mass_matrix()[2][2], 3.0 * (0.5 * 0.25 + 0.04), 1e-12);  // Steiner
 }
 
-TEST("a turn carries a box through space as far as its corners, a ball that glides not at all, one off its centre by as much as that") {
+TEST("a turn carries a box through space as far as its corners, a ball with free slip not at all, one off its centre by as much as that") {
     const auto speed = [](const std::string& shape) {
         Bodies<2> bodies(body_scene(2, "bodies = [ { density = 1.0, spin = [3.0], velocity = [0.5, 0.0], " + shape + " } ]"));
         return bodies[0].max_speed();

@@ -114,7 +114,7 @@ TEST("smoke is as it was written, but where a source holds it and inside solids,
     EXPECT_EQ(smoke[10 * 16 + 10], 0);
 }
 
-TEST("in parallel nobody edits: that is refused by name before anything is touched, and nothing is editable") {
+TEST("in parallel edits are refused by name before anything is touched, and nothing is editable") {
     Simulation water = made(drop("mac_water")), particles = made(drop("pbf"));
     const std::string before = state_of(water), before_particles = state_of(particles);
     const std::vector<Vec<3>> at{{{0.5, 0.5, 0}}};

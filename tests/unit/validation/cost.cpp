@@ -242,7 +242,7 @@ TEST("a setting is measured, and its row says so, on the threads that it has wor
     const auto study = add(folder.path(), head + "[[methods]]\nname = \"own\"\nthreads = 3\n[[methods]]\nname = \"small\"\n");
     const int before = set_threads(0);
     const StudyResult result = measure_study(read_study(study, Size::ci), {.repeats = 1}, test::fake_kinds());
-    EXPECT_EQ(set_threads(before), 0) << "a study chooses for nobody after it";
+    EXPECT_EQ(set_threads(before), 0) << "a study sets it for no later one";
     ASSERT_EQ(result.points.size(), 2u);
     EXPECT_EQ(result.points[0].threads, 3);
     EXPECT_EQ(result.points[1].threads, 1) << "32 cells";
@@ -267,7 +267,7 @@ TEST("a figure joins the settings of a method in the study's order, however thei
     EXPECT_NE(figure.find("<title>a: 100, 1</title>"), std::string::npos);
 }
 
-TEST("a device is named with its settings, so that nobody takes a processor for a GPU") {
+TEST("a device is named with its settings, so that a processor is not taken for a GPU") {
     StudyResult result{.study = {.name = "s", .error = "e"}};
     result.points = {point("pbf-opencl", 0.1, 1)};
     result.points[0].setting = "64", result.points[0].device = "a processor (CPU, 2 units)", result.points[0].device_kind = "CPU";

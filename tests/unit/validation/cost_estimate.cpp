@@ -1,5 +1,5 @@
 // What `weir cost --plan` says before a scene runs, against what the scene then does. For every solver that registers a plain scene.
-// Blind to what a scene becomes later, and to machines that are disturbed by more than a factor between two measurements of a second each.
+// Not covered: what a scene becomes later, and machines that are disturbed by more than a factor between two measurements of a second each.
 #include "validation/cost/cost_estimate.hpp"
 
 #include "core/parallel.hpp"

@@ -37,7 +37,7 @@ real fallen(const std::string& scene, real time, real max_dt = infinity) {
 
 }  // namespace
 
-// 5% is what was asked for. The surface moves by the velocity of before, so that a step's lag is left of 150 ms: 3% where dt is 14 ms and
+// 5% is what was asked for. The surface moves by the previous velocity, so that a step's lag is left of 150 ms: 3% where dt is 14 ms and
 // begins small. Were the weight to fall freely within a step, and friction to act on the next, the default step's block would fall 13 times
 // as far at ν = 1 and twice as far at ν = 0.1.
 TEST("a thick block slumps as far by the default step as by small ones") {

@@ -26,9 +26,9 @@ std::int64_t sum(std::span<const std::int64_t> work) { return std::accumulate(wo
 }  // namespace
 
 // Cuts are at multiples of 8 planes, each at the one nearest to where an even share ends: off by half of such a slab at either end of a
-// rank's planes, so that nobody has more than the mean and the heaviest slab.
+// rank's planes, so that no rank has more than the mean and the heaviest slab.
 TEST(
-    "liquid in one end of a tank: whoever has most to do has at most the heaviest 8 planes more than the mean; by planes alone one has "
+    "liquid in one end of a tank: the rank with most work has at most the heaviest 8 planes more than the mean; by planes alone one has "
     "all") {
     const auto work = water::work_of_planes(water_scene(one_end("0.48")));
     ASSERT_EQ(work.size(), 96u);
