@@ -18,7 +18,7 @@ namespace weir::live {
 
 namespace {
 
-constexpr double told_every = 0.25;  // [s]: text is expensive to draw
+constexpr double text_every = 0.25;  // [s]: text is expensive to draw
 /// Where the water has not moved a brush or a text may wait so long: what is drawn for them is time that steps do not get.
 constexpr double patience = 1.0 / 40;  // [s]
 
@@ -123,7 +123,7 @@ void Window::draw() {
 
 void Window::tell() {
     const double since = seconds(clock::now() - told_);
-    if (since < told_every) return;
+    if (since < text_every) return;
     frames_a_second_ = frames_counted_ / std::max(since, 1e-3);
     frames_counted_ = 0;
     told_ = clock::now();

@@ -21,7 +21,7 @@ int threads() {
 int set_threads(int count) { return std::exchange(chosen_threads, std::clamp(count, 0, most_threads)); }
 
 ThreadCountScope::ThreadCountScope(long cells) : before_(worth_of_work) {
-    worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_a_thread, 1, 1 << 20));
+    worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_per_thread, 1, 1 << 20));
 }
 ThreadCountScope::~ThreadCountScope() { worth_of_work = before_; }
 

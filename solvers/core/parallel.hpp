@@ -16,11 +16,11 @@ namespace weir {
 int threads();
 int set_threads(int count);  // 0: the default again; returns the previous setting
 
-/// Scope in which loops of the calling thread belong to a problem of this many cells. Below cells_a_thread cells per thread,
+/// Scope in which loops of the calling thread belong to a problem of this many cells. Below cells_per_thread cells per thread,
 /// synchronization takes longer than the shared work saves. No effect where a number of threads was set.
 class ThreadCountScope {
 public:
-    static constexpr long cells_a_thread = 2048;
+    static constexpr long cells_per_thread = 2048;
     explicit ThreadCountScope(long cells);
     ~ThreadCountScope();
     ThreadCountScope(const ThreadCountScope&) = delete;

@@ -116,7 +116,7 @@ struct Viscosity final : MacEffect<D> {
     TimeRule rule;
     std::vector<Diffuser<D>> axes;
     std::unique_ptr<BodyFriction<D>> friction;  // nullptr without no-slip bodies
-    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) { refuse_friction_of_before(table, scene); }
+    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) { refuse_explicit_friction(table, scene); }
     Stage stage() const override { return rule.time == Time::explicit_ ? Stage::force : Stage::implicit; }
     void apply_before_advection(MacState<D>& s, real dt) override {
         if (rule.explicit_half_before) add(s, dt);

@@ -54,7 +54,7 @@ void BodiesInLiquid<D>::begin(const Domain<D>& domain, real time, real dt) {
     around.reach = 2 * dt * (fastest + dt * norm(gravity_)) + spacing_;  // a particle may push a body this far
     contacts_.find(start_, around);
     meetings_.clear();
-    if (brush_forcing_) be_held(time, dt);
+    if (brush_forcing_) apply_grab(time, dt);
 }
 
 template <int D>
@@ -69,7 +69,7 @@ void BodiesInLiquid<D>::follow(std::shared_ptr<BrushForcing> forcing, const scen
 /// Interactive forcing: dV/dt = rate (target - V) for the mass of the body and of the displaced liquid, implicit in V, so stable for any
 /// step. The factor of V is added to the mass (as in staggered/bodies_in_flow.cpp on a grid).
 template <int D>
-void BodiesInLiquid<D>::be_held(real time, real dt) {
+void BodiesInLiquid<D>::apply_grab(real time, real dt) {
     const auto brush = brush_forcing_->at<D>(time);
     grab_.body = brush.kind == BrushKind::grab ? brush.body : -1;
     if (grab_.body < 0) return;

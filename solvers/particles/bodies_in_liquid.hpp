@@ -85,7 +85,7 @@ private:
     void sum_up();
     void solve_for_velocities(real dt, bool heavy);
     void count_forces();
-    void be_held(real time, real dt);
+    void apply_grab(real time, real dt);
     void record_brush_impulse(bool heavy);
 
     std::shared_ptr<rigid::Bodies<D>> bodies_;

@@ -81,23 +81,23 @@ typename ThreadedSolver<D>::StepEnd ThreadedSolver<D>::end_step(const SumAndMost
     const int before = fluid_.count();
     fluid_.cross_sides();
     fastest_ = fluid_.count() == before ? end.speed : fluid_.fastest();
-    if (fluid_.shared) tell_of_all(end, excess);
+    if (fluid_.shared) reduce_over_ranks(end, excess);
     return end;
 }
 
 /// Collective check: one message per step.
 template <int D>
-void ThreadedSolver<D>::tell_of_all(StepEnd& end, const SumAndMost& excess) {
-    struct Told {
+void ThreadedSolver<D>::reduce_over_ranks(StepEnd& end, const SumAndMost& excess) {
+    struct RankReport {
         SumAndMost excess;
         BoundaryCorrections corrections;
         real speed, fastest, acceleration;
         typename Fluid<D>::Quantity broken;
     };
-    const std::vector<Told> ranks = of_ranks(Told{excess, fluid_.corrections, end.speed, fastest_, end.acceleration, broken_});
+    const std::vector<RankReport> ranks = of_ranks(RankReport{excess, fluid_.corrections, end.speed, fastest_, end.acceleration, broken_});
     fluid_.corrections = corrections_before_;
     SumAndMost all;
-    for (const Told& rank : ranks) {
+    for (const RankReport& rank : ranks) {
         all.add(rank.excess);
         add_corrections(rank.corrections);
         end.speed = std::max(end.speed, rank.speed), fastest_ = std::max(fastest_, rank.fastest);

@@ -77,7 +77,7 @@ private:
     bool warmed_ = false;                   // the first rates of the step are available
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
     std::vector<float> rest_;
-    void tell_of_all(StepEnd& end, const SumAndMost& excess);
+    void reduce_over_ranks(StepEnd& end, const SumAndMost& excess);
     void add_corrections(const BoundaryCorrections& rank);
 
     Migration migration_;

@@ -18,7 +18,7 @@ namespace {
 /// Crowding above which a particle counts as one of many: a lattice has 12.5 (Loeschner et al. 2023 use 13).
 constexpr real crowd = 13;
 /// Markers of a grid along the edge of a cell.
-constexpr real markers_a_cell = 2;
+constexpr real markers_per_cell = 2;
 
 /// 0 at 0, 1 at 1, with zero first and second derivatives at both (Loeschner et al. 2023, section 3.2).
 real smoother_step(real s) { return s * s * s * (s * (6 * s - 15) + 10); }
@@ -141,7 +141,7 @@ void Reconstruction::from_particles(const FieldSet& fields) {
     Extent all;
     {
         const auto timed = passes_.time("particles");
-        cloud_.spacing = fields.grid.spacing[0] / (markers ? markers_a_cell : 1);
+        cloud_.spacing = fields.grid.spacing[0] / (markers ? markers_per_cell : 1);
         gather(own, domain_, band(), cloud_);
         all = in_parts_ ? extent_of_all(extent_of(cloud_)) : extent_of(cloud_);
         if (!all.finite) throw NumericalFailure("position", "a particle's position is not finite");

@@ -70,13 +70,13 @@ bool all_can_read(const std::filesystem::path& file) {
 
 /// In parallel, a run that goes on is also repartitioned where the state requires it (load balancing).
 void save(Simulation& simulation, const std::filesystem::path& folder, const std::string& run, bool goes_on) {
-    bool cut_anew = false;
+    bool repartition = false;
     {
         const Checkpoint checkpoint = state_of(simulation, run);
         checkpoint.write(checkpoint_file(folder));
-        cut_anew = goes_on && simulation.asks_for_other_cut(checkpoint);
+        repartition = goes_on && simulation.needs_repartition(checkpoint);
     }
-    if (cut_anew && all_can_read(checkpoint_file(folder))) simulation.cut_anew(Checkpoint::read(checkpoint_file(folder)));
+    if (repartition && all_can_read(checkpoint_file(folder))) simulation.repartition(Checkpoint::read(checkpoint_file(folder)));
 }
 
 }  // namespace

@@ -24,15 +24,15 @@
 namespace weir::sim {
 namespace {
 
-constexpr double lanes_row = 32;             // cells: rows of fields are padded to whole multiples of it
-constexpr double short_row = 64;             // cells: rows up to this length are not shortened
-constexpr double fewest = 4;                 // minimum number of cells along an axis of a copy
-constexpr double particles_of_copy = 16384;  // in a copy made of particles, whose steps take longest
-constexpr int samples = 1 << 17;             // number of cells: a part of a thousandth is estimated within a tenth of it
-constexpr double alike = 0.02;               // relative to the liquid: less than a tenth of the claimed error
-constexpr double corrected = 0.3;            // relative to the particles: the number of neighbours changes little within it
-constexpr double widest_copy = 3.9;          // ratio of width to height: tall cells reject domains longer than four times their thickness
-constexpr double most_bytes_a_cell = 8000;   // upper bound for any solver: SPH's neighbours at three spacings take half of it
+constexpr double lanes_row = 32;              // cells: rows of fields are padded to whole multiples of it
+constexpr double short_row = 64;              // cells: rows up to this length are not shortened
+constexpr double fewest = 4;                  // minimum number of cells along an axis of a copy
+constexpr double particles_of_copy = 16384;   // in a copy made of particles, whose steps take longest
+constexpr int samples = 1 << 17;              // number of cells: a part of a thousandth is estimated within a tenth of it
+constexpr double alike = 0.02;                // relative to the liquid: less than a tenth of the claimed error
+constexpr double corrected = 0.3;             // relative to the particles: the number of neighbours changes little within it
+constexpr double widest_copy = 3.9;           // ratio of width to height: tall cells reject domains longer than four times their thickness
+constexpr double most_bytes_per_cell = 8000;  // upper bound for any solver: SPH's neighbours at three spacings take half of it
 
 double product(const std::vector<double>& list) { return std::accumulate(list.begin(), list.end(), 1.0, std::multiplies<>()); }
 
@@ -404,17 +404,17 @@ double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<d
 double surface_bytes_of_rank(const scene::Scene& scene, const MemoryEstimate& estimate, int rank, int ranks) {
     const auto options = reconstruction::options_of(scene);
     if (!options) return 0;
-    constexpr double samples_beside = 2, markers_a_cell = 2;
+    constexpr double samples_beside = 2, markers_per_cell = 2;
     const double planes = scene.root().numbers("grid.cells").back(), cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
     const double beside = options->method == reconstruction::Method::level_set
                               ? samples_beside
-                              : reconstruction::read_beside(*options) / (estimate.particle_solver ? 1 : markers_a_cell);
+                              : reconstruction::read_beside(*options) / (estimate.particle_solver ? 1 : markers_per_cell);
     return estimate.surface_bytes * std::min(1.0, 1.0 / ranks + (ranks > 1 ? cuts * beside / planes : 0));
 }
 
 void require_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, Use use, double available) {
     const double cells = product(scene.root().numbers("grid.cells"));
-    if (cells <= cells_of_copy || (cells * most_bytes_a_cell <= available && !factorises(scene))) return;
+    if (cells <= cells_of_copy || (cells * most_bytes_per_cell <= available && !factorises(scene))) return;
     const MemoryEstimate f = estimate_or_least(scene, kinds);
     const double needed = use == Use::solver ? f.bytes : bytes_of_run(scene, f, use == Use::run_with_frames);
     if (needed <= available) return;

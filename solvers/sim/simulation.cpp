@@ -218,7 +218,7 @@ void Simulation::replace(std::unique_ptr<Solver> solver) {
 }
 
 /// Empty where the present partition is good enough.
-Cut Simulation::better_cut(const Checkpoint& state) const {
+Cut Simulation::balanced_cut(const Checkpoint& state) const {
     const Cut& present = shares_->cut;
     if (present.empty() || !kind_.work_of_planes) return {};
     constexpr double worth = 0.9;  // the solver is rebuilt for it, which takes as long as some steps
@@ -229,10 +229,10 @@ Cut Simulation::better_cut(const Checkpoint& state) const {
     return most(cut) < worth * most(present) ? cut : Cut{};
 }
 
-bool Simulation::asks_for_other_cut(const Checkpoint& state) const { return !better_cut(state).empty(); }
+bool Simulation::needs_repartition(const Checkpoint& state) const { return !balanced_cut(state).empty(); }
 
-void Simulation::cut_anew(const Checkpoint& state) {
-    Cut cut = better_cut(state);
+void Simulation::repartition(const Checkpoint& state) {
+    Cut cut = balanced_cut(state);
     if (cut.empty()) return;
     probes_.keep(*solver_);
     std::unique_ptr<Solver> solver = make_solver(scene_, kind_, cut);
@@ -304,7 +304,7 @@ StepReport Simulation::step_towards(real target) {
         const real wanted = wanted_dt(target);
         const StepLimit stable = limit();
         const real dt = within_limit(wanted, stable);
-        if (dt < wanted && !split_) tell_of_parts(wanted, dt, stable);
+        if (dt < wanted && !split_) warn_of_parts(wanted, dt, stable);
         probes_.before_step(*solver_, dt);
         report = solver_->step(dt);
         sim::check_finite(solver_->checks_itself() ? FieldSet{} : fields(), report);
@@ -316,7 +316,7 @@ StepReport Simulation::step_towards(real target) {
     ++steps_;
     if (steady_rate_ > 0) steady_ = sim::change_and_keep(fields(), last_velocity_) <= steady_rate_ * report.dt;
     choose_threads(clock.elapsed());
-    if (const std::string concern = solver_->concern(); !concern.empty()) tell_concern(concern);
+    if (const std::string concern = solver_->concern(); !concern.empty()) warn_of_concern(concern);
     at_frame_ = reached(frame_target) || steady_;
     if (at_frame_) ++frame_;
     measure();
@@ -396,14 +396,14 @@ real Simulation::within_limit(real dt, const StepLimit& limit) const {
 }
 
 /// Reports only the first concern of each kind; texts that differ only in their numbers are of the same kind.
-void Simulation::tell_concern(const std::string& concern) {
+void Simulation::warn_of_concern(const std::string& concern) {
     const std::string kind = concern.substr(0, concern.find_first_of("0123456789"));
     if (std::find(concerns_.begin(), concerns_.end(), kind) != concerns_.end()) return;
     concerns_.push_back(kind);
     warnings_.push_back(scene_.file() + ": " + concern);
 }
 
-void Simulation::tell_of_parts(real wanted, real dt, const StepLimit& limit) {
+void Simulation::warn_of_parts(real wanted, real dt, const StepLimit& limit) {
     split_ = true;
     const char* key = scene_.has("time.dt") ? "time.dt" : "time.cfl";
     warnings_.push_back(
@@ -443,7 +443,7 @@ void Simulation::restore(const Checkpoint& from) {
     try {
         require_same_domain(scene_, from);
         resume_changes(from);
-        if (Cut cut = better_cut(from); !cut.empty()) {
+        if (Cut cut = balanced_cut(from); !cut.empty()) {
             solver_ = make_solver(scene_, kind_, cut);
             shares_->cut = std::move(cut);
         }

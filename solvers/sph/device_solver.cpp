@@ -72,8 +72,8 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back();  // by particles inside bodies
-    fluid_.finish(dt);         // XSPH, vorticity
+    if (bodies_) apply_reaction();  // by particles inside bodies
+    fluid_.finish(dt);              // XSPH, vorticity
     fluid_.stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     const real speed = this->find_speed();
@@ -131,15 +131,15 @@ template <int D>
 void DeviceSphSolver<D>::carry_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     bodies_->exchange(fluid_.domain(), dt, true);
-    give_back();
+    apply_reaction();
     fluid_.place_solids();
 }
 
 template <int D>
-void DeviceSphSolver<D>::give_back() {
+void DeviceSphSolver<D>::apply_reaction() {
     if (bodies_->meetings().empty()) return;
     Fluid<D>& state = fluid_.borrow();
-    sph::give_back(*bodies_, state);
+    sph::apply_reaction(*bodies_, state);
     fluid_.send(state.v, fluid_.v);
 }
 

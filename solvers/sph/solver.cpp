@@ -59,7 +59,7 @@ StepReport SphSolver<D>::step(real dt) {
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back(*bodies_, fluid_);           // by particles inside bodies
+    if (bodies_) apply_reaction(*bodies_, fluid_);      // by particles inside bodies
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
     this->drop_ghosts();
     this->stop_frozen_again();
@@ -222,7 +222,7 @@ template <int D>
 void SphSolver<D>::carry_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     bodies_->exchange(fluid_.domain, dt, true);
-    give_back(*bodies_, fluid_);
+    apply_reaction(*bodies_, fluid_);
 }
 
 /// X += dt V. Particles that would end inside push the bodies.

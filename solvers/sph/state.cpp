@@ -160,7 +160,7 @@ void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>
 }
 
 template <int D>
-void give_back(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid) {
+void apply_reaction(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid) {
     using particles::Fluid;
     for (const auto& m : bodies.meetings())
         if (m.body >= 0) Fluid<D>::put(fluid.v, m.particle, fluid.velocity(m.particle) + bodies.back(m));
@@ -175,8 +175,8 @@ void move_bodies(particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& flui
     bodies.end(fluid.domain, dt, dt);
 }
 
-template void give_back(const particles::BodiesInLiquid<2>&, particles::Fluid<2>&);
-template void give_back(const particles::BodiesInLiquid<3>&, particles::Fluid<3>&);
+template void apply_reaction(const particles::BodiesInLiquid<2>&, particles::Fluid<2>&);
+template void apply_reaction(const particles::BodiesInLiquid<3>&, particles::Fluid<3>&);
 template void move_bodies(particles::BodiesInLiquid<2>&, particles::Fluid<2>&, const std::vector<int>&, real);
 template void move_bodies(particles::BodiesInLiquid<3>&, particles::Fluid<3>&, const std::vector<int>&, real);
 template Vec<2> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<2>&, int, real, real,

@@ -39,7 +39,7 @@ constexpr real unfelt = 0.1;
 
 }  // namespace
 
-void refuse_friction_of_before(const scene::Table& viscosity, const scene::Scene& scene) {
+void refuse_explicit_friction(const scene::Table& viscosity, const scene::Scene& scene) {
     for (const auto& body : scene.root().tables("bodies"))
         if (viscosity.text("scheme") != "implicit" && body.text("slip") == "no")
             scene.refuse(
@@ -438,7 +438,7 @@ void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
             if (no_slip_walls_) heavy_[at] += no_slip_walls_->bodies[i].impulse[k];
         }
     }
-    if (brush_forcing_) be_held(s, dt);
+    if (brush_forcing_) apply_grab(s, dt);
     added_.begin(masses_, free_, mobility_);
 }
 
@@ -454,7 +454,7 @@ void BodiesInFlow<D>::follow(std::shared_ptr<BrushForcing> forcing, const scene:
 /// Interactive forcing: dv/dt = rate (target − v) for the mass of the body and of the displaced liquid, implicit in v, so stable for any
 /// step. The factor of v is added to the mass.
 template <int D>
-void BodiesInFlow<D>::be_held(const MacState<D>& s, real dt) {
+void BodiesInFlow<D>::apply_grab(const MacState<D>& s, real dt) {
     const auto brush = brush_forcing_->at<D>(s.time);
     grab_.body = brush.kind == BrushKind::grab ? brush.body : -1;
     if (grab_.body < 0) return;

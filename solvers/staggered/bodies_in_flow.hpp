@@ -25,7 +25,7 @@
 namespace weir::staggered {
 
 /// Rejects explicit friction where a scene's fluid has no-slip bodies: their friction is implicit.
-void refuse_friction_of_before(const scene::Table& viscosity, const scene::Scene& scene);
+void refuse_explicit_friction(const scene::Table& viscosity, const scene::Scene& scene);
 
 template <int D>
 class BodiesInFlow {
@@ -97,7 +97,7 @@ private:
     rigid::Block<D> mass_of(std::size_t body) const;
     rigid::Block<D> mass_of_wet_surface(const MacState<D>& s, std::size_t body) const;
     void begin(const MacState<D>& s, bool wet, real dt);
-    void be_held(const MacState<D>& s, real dt);
+    void apply_grab(const MacState<D>& s, real dt);
     void record_brush_impulse();
     void measure_added_mass(const MacState<D>& s, poisson::Solver<D>& solver);
     void pushed(const MacState<D>& s, std::vector<real>& impulse, real dt) const;

@@ -359,7 +359,7 @@ real LevelSet<D>::cubic(const Vec<D>& x) const {
 }
 
 template <int D>
-std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part) {
+std::size_t LevelSet<D>::correct_with_particles(const Markers<D>& markers, const Grid<real, D>* part) {
     const real h = frame_.h_min();
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D per cell
     const real margin = sure_side * h;               // Enright et al. 2002: closer to the surface the side is uncertain

@@ -51,7 +51,7 @@ public:
     /// Particle level-set correction: unites the liquid with spheres around escaped markers. Returns how many of this rank's own markers
     /// had escaped. Markers must be sorted. `part`, if given: the liquid fraction of each cell; a marker in a cell without liquid is
     /// ignored.
-    std::size_t rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part = nullptr);
+    std::size_t correct_with_particles(const Markers<D>& markers, const Grid<real, D>* part = nullptr);
     /// Number of this rank's own escaped markers still outside the surface: drops too small for the grid.
     std::size_t count_airborne(const Markers<D>& markers) const;
     /// Reinitializes φ to a signed distance and finds the band.

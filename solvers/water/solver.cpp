@@ -121,7 +121,7 @@ void Water<D>::correct_surface(real dt) {
         const auto timed = passes_.time("level set");
         const auto& exempt = not_solved_for(dt);
         if (keeps_volume_) volume_.settle(surface_.phi, state_, exempt);
-        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_, keeps_volume_ ? &volume_.part() : nullptr));
+        escaped_ += static_cast<std::int64_t>(surface_.correct_with_particles(markers_, keeps_volume_ ? &volume_.part() : nullptr));
         if (keeps_volume_) volume_.correct(surface_, state_, exempt, volume_.courant(dt, rate_, norm(gravity_)));
         surface_.redistance();
     }

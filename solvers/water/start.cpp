@@ -79,7 +79,7 @@ Water<D>::Water(const scene::Scene& scene)
 /// The initial pressure for friction: hydrostatic, zero in the highest liquid cell.
 template <int D>
 void Water<D>::couple_friction(const scene::Scene& scene) {
-    refuse_friction_of_before(*scene.effect("viscosity"), scene);
+    refuse_explicit_friction(*scene.effect("viscosity"), scene);
     const auto& all = bodies_->bodies().all();
     if (std::none_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; })) return;
     bodies_->couple_friction(state_, true);

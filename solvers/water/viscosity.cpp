@@ -280,7 +280,7 @@ void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, 
     list_unknowns();
     for (int a = 0; a < D; ++a)
         for (Faces* faces : {&p_, &x_, &with_pressure_}) (*faces)[static_cast<std::size_t>(a)].fill(0);
-    if (forces) foresee(state, surface, dt, *forces, at_surface);
+    if (forces) predict_from_pressure(state, surface, dt, *forces, at_surface);
     if (bodies_) {
         list_walls(state);
         bodies_->add_diagonal(state, dt_nu, diagonal_);

@@ -65,8 +65,8 @@ private:
     void list_unknowns();
     void list_walls(const MacState<D>& state);
     void set_theta(real dt_nu);
-    void foresee(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
-                 const Faces* at_surface = nullptr);
+    void predict_from_pressure(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
+                               const Faces* at_surface = nullptr);
     void continue_to_surface(Faces& with_pressure);
     bool step(int a, Index<D>& I, int d, int by) const;
     void add_with_pressure(MacState<D>& state, real sign) const;

@@ -44,8 +44,8 @@ void SurfaceViscosity<D>::continue_to_surface(Faces& with_pressure) {
 
 /// Known from the last pressure between cells that were liquid then and are now; beside bodies only deep in the liquid.
 template <int D>
-void SurfaceViscosity<D>::foresee(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
-                                  const Faces* at_surface) {
+void SurfaceViscosity<D>::predict_from_pressure(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
+                                                const Faces* at_surface) {
     const real deep = -1.5 * frame_.h_max();
     const auto is_known = [&](const Index<D>& I) {
         return state.cells(I) == Cell::fluid && (bodies_ ? surface.phi(I) < deep : state.p(I) != 0);
@@ -108,11 +108,12 @@ real SurfaceViscosity<D>::unseen(const MacState<D>& state, const Faces& with_pre
     return size > 0 ? bound / size : 0;
 }
 
-#define WEIR_INSTANTIATE(D)                                                                                                        \
-    template void SurfaceViscosity<D>::foresee(const MacState<D>&, const LevelSet<D>&, real, const MacVelocity<D>&, const Faces*); \
-    template void SurfaceViscosity<D>::continue_to_surface(Faces&);                                                                \
-    template void SurfaceViscosity<D>::apply_again(const MacState<D>&, const Faces&, real, Faces&);                                \
-    template void SurfaceViscosity<D>::continue_with_pressure(const MacState<D>&, Faces&);                                         \
+#define WEIR_INSTANTIATE(D)                                                                                                       \
+    template void SurfaceViscosity<D>::predict_from_pressure(const MacState<D>&, const LevelSet<D>&, real, const MacVelocity<D>&, \
+                                                             const Faces*);                                                       \
+    template void SurfaceViscosity<D>::continue_to_surface(Faces&);                                                               \
+    template void SurfaceViscosity<D>::apply_again(const MacState<D>&, const Faces&, real, Faces&);                               \
+    template void SurfaceViscosity<D>::continue_with_pressure(const MacState<D>&, Faces&);                                        \
     template real SurfaceViscosity<D>::unseen(const MacState<D>&, const Faces&, real, const Faces&, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -16,7 +16,7 @@ namespace {
 constexpr int values_of_axis = 6;  // from the low end of an axis to its high end
 
 /// Returns whether a quantity has no value before the first step.
-bool of_a_step(const std::string& series) {
+bool needs_step(const std::string& series) {
     return series == "divergence" || series == "density_error" || series == "dt" || series == "cfl" || series == "fastest";
 }
 
@@ -152,7 +152,7 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
     const auto broken = [&]() -> std::optional<Break> {
         for (Watch& watch : watches) {
             const std::string& series = watch.invariant().series;
-            if (simulation->steps() == 0 && of_a_step(series)) continue;
+            if (simulation->steps() == 0 && needs_step(series)) continue;
             if (const real v = value_of(series, *simulation, report); !watch.holds(v))
                 return Break{fmt::format("{}: {:.4g}", watch.invariant().text(), v), watch.invariant().text(), simulation->steps(),
                              simulation->time()};
