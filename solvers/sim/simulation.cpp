@@ -107,13 +107,13 @@ long cells_of(const scene::Scene& scene) {
 
 /// Number of threads that the cells of a scene have enough work for.
 int threads_for(const scene::Scene& scene) {
-    const ThreadCountScope worth(cells_of(scene));
+    const ProblemSizeScope size(cells_of(scene));
     return weir::threads();
 }
 
 std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Cut& cut) {
-    const ThreadCountScope worth(cells_of(scene));
-    const PartitionScope so(cut);
+    const ProblemSizeScope size(cells_of(scene));
+    const PartitionScope partition(cut);
     return kind.make(scene);
 }
 

@@ -111,7 +111,7 @@ public:
     bool has_frames() const { return every_ < infinity; }  // besides the first and the last
     std::int64_t frame() const { return frame_; }
 
-    /// Threads of the next step: the number that was set, otherwise at most as many as the scene has work for (ThreadCountScope), chosen by
+    /// Threads of the next step: the number that was set, otherwise at most as many as the scene has work for (ProblemSizeScope), chosen by
     /// measured times (ThreadChoice).
     int threads() const;
     FieldSet fields() const { return static_cast<const Solver&>(*solver_).fields(); }

@@ -287,7 +287,7 @@ TEST("a small scene takes no more threads than it has work for, a large one all,
         EXPECT_EQ(next, seen.back());
         return seen;
     };
-    const int available = std::max(1, omp_get_max_threads()), grain = weir::ThreadCountScope::cells_per_thread / 8;
+    const int available = std::max(1, omp_get_max_threads()), grain = weir::ProblemSizeScope::cells_per_thread / 8;
     weir::set_threads(0);
     EXPECT_EQ(weir::threads(), available);
     EXPECT_EQ(threads_of(8), (std::vector<int>{1, 1}));
