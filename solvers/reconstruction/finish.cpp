@@ -36,15 +36,15 @@ struct Neighbours {
 void exchange_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut& cut) {
     const auto [begin, end] = layers_of(cut, slabs().rank());
     if (begin == end) return;
-    std::vector<Parcel> parcels;
+    std::vector<Message> messages;
     const auto meet = [&](int layer, std::size_t first, std::size_t last, std::size_t from, std::size_t to) {
         if (layer < 0 || layer + 1 >= cut.planes()) return;
-        parcels.push_back({owner_of(cut, layer), points.data() + first, (last - first) * sizeof(Vec<3>), points.data() + from,
-                           (to - from) * sizeof(Vec<3>)});
+        messages.push_back({owner_of(cut, layer), points.data() + first, (last - first) * sizeof(Vec<3>), points.data() + from,
+                            (to - from) * sizeof(Vec<3>)});
     };
     meet(begin - 1, piece.begin, piece.first_end, piece.below, piece.begin);
     meet(end, piece.last_begin, piece.end, piece.end, piece.above);
-    slabs().trade(parcels);
+    slabs().exchange(messages);
 }
 
 }  // namespace
