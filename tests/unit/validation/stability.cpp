@@ -22,8 +22,8 @@ namespace {
 
 /// The fake solver's step is at most 0.03 s; `stall_at` is the step after which its advised step is nothing.
 const std::string bare_axis = "[[axes]]\nname = \"end\"\nkey = \"time.end\"\nlow = 0.05\nhigh = 2\nhard_because = \"it is long\"\n";
-const std::string preconditions = "proof = [{ quantity = \"mass\", at_least = 1, why = \"there is something\" }]\n";
-const std::string axis = bare_axis + "kind = \"limit\"\n" + preconditions;
+const std::string mass_precondition = "proof = [{ quantity = \"mass\", at_least = 1, why = \"there is something\" }]\n";
+const std::string axis = bare_axis + "kind = \"limit\"\n" + mass_precondition;
 const std::string stalls = "question = \"q\"\nset = [\"stall_at = 10\"]\n";
 
 fs::path add(const fs::path& root, const std::string& text) {
@@ -330,8 +330,8 @@ std::string study_error(const Stress& stress, real value) {
 
 TEST("an axis must give its preconditions and name its kind; a reason for not being reached belongs to a limit") {
     EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"limit\"\n").find("proof"), std::string::npos);
-    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + preconditions).find("kind"), std::string::npos);
-    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"units\"\n" + preconditions + "unbroken = [{ why = \"w\" }]\n")
+    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + mass_precondition).find("kind"), std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"units\"\n" + mass_precondition + "unbroken = [{ why = \"w\" }]\n")
                   .find("only an axis"),
               std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"limit\"\nproof = [{ quantity = \"mass\", why = \"w\" }]\n")
