@@ -115,7 +115,7 @@ run_tests() {
 }
 
 usage() {
-    sed -n '2,/--help` tells more/{s/^# \{0,1\}//;s/ Each call.*//;p}' "$0"
+    sed -n '2,/^set -/{/^# /{s/^# //;s/ Each call.*//;/^second call/d;p}}' "$0"
 }
 
 case "${1:-}" in

@@ -38,14 +38,18 @@ alike() {
     local difference
     difference=$(files_differ "$1" "$2") && [ -e "$2/run.json" ] || fail "$2 is not as $1: $difference"
 }
-# compare NAME "RANKS THREADS, ..." SCENE [--set ...]: each against one process with one thread
+size=${WEIR_TEST_SIZE:-ci}
+# compare NAME "RANKS THREADS, ..." SCENE [--set ...]: each against one process with one thread. At ci size two threads of two ranks, and one of
+# more: six or eight threads on two cores wait most of their time.
 compare() {
     local name=$1 list=$2 pair
     shift 2
     ends 0 "$weir" run "$@" --checkpoint-every 1000 --quiet --threads 1 --out "$name"
     while read -r -d, ranks threads; do
-        ends 0 over "$ranks" "$weir" run "$@" --checkpoint-every 1000 --quiet --threads "$threads" --out "$name-$ranks-$threads"
-        alike "$name" "$name-$ranks-$threads"
+        [ "$size" != ci ] || threads=$((ranks == 2 ? 2 : 1))
+        rm -rf "$name-$ranks"
+        ends 0 over "$ranks" "$weir" run "$@" --checkpoint-every 1000 --quiet --threads "$threads" --out "$name-$ranks"
+        alike "$name" "$name-$ranks"
     done <<<"$list,"
 }
 
@@ -159,40 +163,40 @@ peaks() {
 # pieces of a file between two ranks, and blocks that are being compressed
 handed=$((4 * 1048576 + 2 * 8 * 32768)) huge_page=$((2 * 1048576))
 # Of every number of ranks and threads a few; WEIR_TEST_SIZE=full takes all.
-every="2 1,3 2,4 2"
-[ "${WEIR_TEST_SIZE:-ci}" = ci ] || every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
+every="2 2,3 1,4 1"
+[ "$size" = ci ] || every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
 2d)
     compare all "$every" "$flat"
-    grep -q '"count":2,"cut":\[0,72,152\]' all-2-1/run.json || fail "run.json does not tell the ranks"
+    grep -q '"count":2,"cut":\[0,72,152\]' all-2/run.json || fail "run.json does not tell the ranks"
     compare watched "2 1,3 2,4 1" "$flat" --set time.stop_when_steady=17 --set time.max_dt=0.005 --set time.cfl=0.5
-    holds_own watched-2-1 watched-4-1
+    holds_own watched-2 watched-4
     ends_steady watched
     # what is measured of fields by their names is of own planes; what a metric of its own looks at is all of it
     norms="--measure velocity.l2_relative --measure velocity.linf --measure velocity.max --measure pressure.l1 --measure kinetic_energy.drift --measure divergence.max"
     vortices="$scenes/../../../cases/taylor_green/scene.toml --set grid.cells=[160,160] --set time.end=0.1 --reference taylor_green"
     compare norms "2 1,3 2,4 1" $vortices $norms
-    for run in norms-2-1 norms-3-2 norms-4-1; do measures_alike norms $run; done
-    holds_own norms-2-1 norms-4-1
+    for run in norms-2 norms-3 norms-4; do measures_alike norms $run; done
+    holds_own norms-2 norms-4
     for advection in maccormack conservative; do
         compare stick-$advection "2 1,1 2" "$scenes/ranks_no_slip.toml" --set "scheme.advection=\"$advection\""
     done
     poisoned 3 1 "$scenes/ranks_no_slip.toml"
     compare energy "2 1" $vortices --measure flow.energy
-    measures_alike energy energy-2-1
-    holds_whole energy-2-1
+    measures_alike energy energy-2
+    holds_whole energy-2
     ;;
 3d)
     compare all "$every" "$deep"
     compare stick "2 1,3 1" "$scenes/ranks_no_slip_3d.toml"
     compare pressed "2 1,3 2,4 1" "$deep" --set 'probes=[{name="side",kind="wall_pressure",at=[0.0,0.3,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.24,0.28]}]'
-    holds_own pressed-3-2
+    holds_own pressed-3
     ;;
 particles)
     compare pbf "$every" "$drops"
     compare sph "$every" "$drops" $sph
-    grep -q '"count":2,"cut":"equal numbers of particles"' pbf-2-1/run.json || fail "run.json does not tell the ranks"
+    grep -q '"count":2,"cut":"equal numbers of particles"' pbf-2/run.json || fail "run.json does not tell the ranks"
     ;;
 particles_3d)
     compare pbf "$every" "$drops_deep"
@@ -200,17 +204,17 @@ particles_3d)
     ;;
 water)
     compare flip "$every" "$water" "${frictionless[@]}"
-    holds_own flip-2-1
-    grep -q '"every_rank_does":"the levels of the pressure' flip-2-1/run.json || fail "run.json does not tell what is not shared"
+    holds_own flip-2
+    grep -q '"every_rank_does":"the levels of the pressure' flip-2/run.json || fail "run.json does not tell what is not shared"
     compare sticky "$every" "$water" "${probes[@]}"
-    holds_own sticky-2-1
+    holds_own sticky-2
     compare few "4 2" "$scenes/water.toml"
     ;;
 water_3d)
     compare flip "$every" "$water_deep"
-    holds_own flip-4-2
+    holds_own flip-4
     compare viscous "$every" "$water_deep" $viscous "${probes_deep[@]}"
-    holds_own viscous-4-2
+    holds_own viscous-4
     grep -q '"viscous_iterations":{' viscous/run.json || fail "friction took no iterations"
     ;;
 water_schemes)
@@ -224,12 +228,12 @@ water_schemes)
     compare ring_of_few_tall "2 1,4 1" "$few" $seam
     compare ring_apic "3 1" "$water_deep" $water_ring $even --set scheme.transfer=apic
     compare ring_own "2 1,4 1" "$water_deep" $water_ring $even --set time.cfl=2 --set time.max_dt=0.05
-    holds_own ring_own-4-1
+    holds_own ring_own-4
     compare ring_viscous "2 1,4 1" "$water_deep" $water_ring $even $viscous --set effects.viscosity.scheme=implicit
     compare whole_viscous "3 1" "$water_deep" $viscous --set scheme.poisson.method=cg_mic0
-    holds_whole whole_viscous-3-1
+    holds_whole whole_viscous-3
     compare flat_cells "2 2,3 1,4 1" "$water_deep" --set grid.cells=[28,40,26]
-    holds_own flat_cells-3-1
+    holds_own flat_cells-3
     compare flat_ring "3 1" "$water_deep" $water_ring $viscous --set grid.cells=[28,30,32]
     in_two_parts 0.03 0.06 "$water_deep"
     ;;
@@ -237,9 +241,9 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     told_cut() { grep -o '"cut":\[[0-9,]*\]' "$1/run.json" | cut -d: -f2; }
     is_cut() { [ "$(told_cut "$1")" = "$2" ] || fail "$1 is cut $(told_cut "$1"), not $2"; }
     compare begun "$every" "$one_end"
-    is_cut begun-2-1 '[0,16,80]' # 20 planes of liquid
-    is_cut begun-4-2 '[0,8,16,24,80]'
-    holds_own begun-4-2
+    is_cut begun-2 '[0,16,80]' # 20 planes of liquid
+    is_cut begun-4 '[0,8,16,24,80]'
+    holds_own begun-4
     poisoned 3 1 "$one_end"
     in_two_parts 0.06 0.07 "$one_end"
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
@@ -249,7 +253,7 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     one_end="$one_end --set time.stop_when_steady=300"
     ends 0 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out rebalanced
     for ranks in 2 4; do
-        ends 0 over $ranks "$weir" run $one_end --checkpoint-every 3 --quiet --threads 2 --out rebalanced-$ranks
+        ends 0 over $ranks "$weir" run $one_end --checkpoint-every 3 --quiet --threads $((ranks == 2 ? 2 : 1)) --out rebalanced-$ranks
         alike rebalanced rebalanced-$ranks
     done
     [ "$(told_cut rebalanced-2)" != '[0,16,80]' ] || fail "nothing was repartitioned at a checkpoint"
@@ -258,9 +262,9 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     ;;
 heightfield)
     compare shallow "$every" "$shallow"
-    holds_own shallow-2-1 shallow-4-2
+    holds_own shallow-2 shallow-4
     compare columns "$every" "$columns"
-    holds_own columns-2-1 columns-4-2
+    holds_own columns-2 columns-4
     around='--set sides={z_min={kind="periodic"},z_max={kind="periodic"},x_max={kind="wall"}}'
     compare ring "2 1,3 2" "$shallow" $around --set scheme.limiter=van_leer
     compare ring_columns "2 1,3 2" "$columns" $around
@@ -269,12 +273,12 @@ heightfield)
     for scene in "$shallow" "$columns"; do
         rm -rf fronts*
         compare fronts "2 1,3 2" "$scene" --set 'probes=[{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},{name="z",kind="front",axis="z"}]'
-        holds_own fronts-3-2
+        holds_own fronts-3
     done
     for case in "$shallow --set time.stop_when_steady=10" "$columns --set time.stop_when_steady=15"; do
         rm -rf watched*
         compare watched "2 1,3 2,4 1" $case
-        holds_own watched-2-1 watched-4-1
+        holds_own watched-2 watched-4
         ends_steady watched
     done
     for scene in "$shallow" "$columns"; do
@@ -284,32 +288,32 @@ heightfield)
 heightfield_2d) # one row of columns: replicated work, objects on it too
     for model in shallow_water columns; do
         compare $model "$every" "$line" --set scheme.model=$model
-        grep -q '"cut":\[\]' $model-3-2/run.json || fail "run.json tells of a cut"
-        grep -q '"every_rank_does":"all of it"' $model-3-2/run.json || fail "run.json does not tell that every rank does all of it"
+        grep -q '"cut":\[\]' $model-3/run.json || fail "run.json tells of a cut"
+        grep -q '"every_rank_does":"all of it"' $model-3/run.json || fail "run.json does not tell that every rank does all of it"
     done
     compare floats "2 1,3 2" "$line" --set scheme.model=columns --set 'floats=[{size=[0.5,0.2],at=[5.0,0.35]}]'
     in_two_parts 0.2 0.4 "$line"
     ;;
 waves)
     compare sea "$every" "$sea"
-    grep -q '"cut":\[0,16,44\]' sea-2-1/run.json || fail "run.json does not tell the ranks"
-    holds_own sea-2-1 sea-4-2
-    ! grep -q every_rank_does sea-2-1/run.json || fail "run.json tells of what is not shared on a sea"
+    grep -q '"cut":\[0,16,44\]' sea-2/run.json || fail "run.json does not tell the ranks"
+    holds_own sea-2 sea-4
+    ! grep -q every_rank_does sea-2/run.json || fail "run.json tells of what is not shared on a sea"
     compare trains "$every" "$trains"
-    grep -q '"cut":\[0,8,22\]' trains-2-1/run.json || fail "run.json does not tell the ranks of layers"
-    holds_own trains-2-1 trains-4-2
+    grep -q '"cut":\[0,8,22\]' trains-2/run.json || fail "run.json does not tell the ranks of layers"
+    holds_own trains-2 trains-4
     compare below "2 1,3 2,4 1" "$below"
-    holds_own below-4-1
+    holds_own below-4
     compare crest "2 1,3 2" "$sea" --set 'probes=[{name="crest",kind="front",axis="y"}]' --set waves.choppiness=0
-    holds_own crest-2-1
+    holds_own crest-2
     compare stokes "2 2,3 1" "$below" --set 'waves={model="stokes",height=1.0,wavelength=40.0,heading=0.5}'
     compare sines "3 1" "$below" --set 'waves={model="sines",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
     compare gerstner "2 1,3 2" "$below" --set 'waves={model="gerstner",trains=[{amplitude=0.5,wavelength=40.0,heading=1.0}]}'
     compare basin "$every" "$below" $basin \
         --set 'probes=[{name="below",kind="point",field="velocity",at=[50.0,-3.0,60.0]},{name="above",kind="point",field="level_set",at=[20.0,1.0,30.0]},
             {name="gauge",kind="gauge",at=[30.0,0.0,70.0]},{name="sums",kind="integral",field="potential_energy"}]'
-    holds_own basin-2-1 basin-4-2
-    ! grep -q every_rank_does basin-2-1/run.json || fail "run.json tells of what is not shared in a basin"
+    holds_own basin-2 basin-4
+    ! grep -q every_rank_does basin-2/run.json || fail "run.json tells of what is not shared in a basin"
     compare sheet "2 1,4 2" "$below" $basin --set grid.cells=[20,1,22]
     compare narrow "3 1" "$below" $basin --set grid.cells=[2,7,22] # fewer columns than ranks
     in_two_parts 0.2 0.6 "$below" $basin
@@ -318,47 +322,47 @@ waves)
         -e 's/-9.81, 0.0/-9.81/; s/-3.0, 60.0/-3.0/; s/heading = 0.4, //' "$below" >row.toml
     compare row "2 2,3 1,4 1" row.toml
     compare row_basin "3 1" row.toml --set 'waves={model="basin"}' --set 'liquid=[{shape="wave",level=0.0,amplitude=0.5,wavelength=160.0}]'
-    grep -q '"every_rank_does":"the surface.s one row"' row_basin-3-1/run.json || fail "run.json does not tell what is not shared in 2D"
+    grep -q '"every_rank_does":"the surface.s one row"' row_basin-3/run.json || fail "run.json does not tell what is not shared in 2D"
     compare surface "3 2" row.toml --set grid.cells=[40,1] --set probes=[]
-    grep -q '"every_rank_does":"all of it"' surface-3-2/run.json || fail "run.json does not tell that every rank does all of it"
+    grep -q '"every_rank_does":"all of it"' surface-3/run.json || fail "run.json does not tell that every rank does all of it"
     for scene in "$sea" "$trains"; do
         in_two_parts 0.2 0.6 "$scene"
     done
     ;;
 tallcell)
     compare deep "$every" "$tall_deep"
-    holds_own deep-2-1 deep-4-2
-    grep -q '"every_rank_does":"the levels of the pressure of fewer than 20,000 unknowns' deep-2-1/run.json || fail "run.json does not tell what is not shared"
+    holds_own deep-2 deep-4
+    grep -q '"every_rank_does":"the levels of the pressure of fewer than 20,000 unknowns' deep-2/run.json || fail "run.json does not tell what is not shared"
     compare flat "2 1,3 2,4 1" "$tall"
     tall_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
     clear='--set solids=[]' # columns are looked at together where no solid cuts them
     # paths of two cells around the ends of the cut axis, in steps that advection allows
     compare ring "2 1,3 2,4 1" "$tall_deep" $tall_ring $clear --set time.cfl=3 --set time.max_dt=0.05 \
         --set 'initial.velocity={name="random",speed=2.0}' --set 'effects={gravity={g=[0.0,-9.81,0.0]}}'
-    holds_own ring-4-1
+    holds_own ring-4
     # farther than a step of the scene's CFL number goes, without and around the ends
     compare fast "3 1,4 2" "$tall_deep" $fast
     compare fast_ring "3 2" "$tall_deep" $tall_ring $clear $fast
-    holds_own fast-4-2 fast_ring-3-2
+    holds_own fast-4 fast_ring-3
     compare probed "2 1,3 2" "$tall_deep" "${probes_tall[@]}" --set 'output.surface={method="level_set"}'
-    holds_own probed-3-2
+    holds_own probed-3
     compare watched "2 1" "$tall_deep" --set time.stop_when_steady=1e-9
-    holds_own watched-2-1
+    holds_own watched-2
     compare single "3 1" "$tall_deep" $clear --set scheme.columns=single --set scheme.advection=semi_lagrangian
     compare uniform "3 2" "$tall_deep" --set scheme.columns=uniform
     compare lines "2 1,4 2" "$tall_deep" $clear --set grid.cells=[32,48,26] --set grid.size=[0.64,0.96,0.52]
     compare lying "3 1" "$tall_deep" --set 'effects={gravity={g=[-9.81,0.0,0.0]}}'  # columns along x
     compare across "3 1" "$tall_deep" --set 'effects={gravity={g=[0.0,0.0,-9.81]}}' # columns through all slabs: every rank does all
-    holds_whole across-3-1
+    holds_whole across-3
     compare thin "4 1" "$tall_deep" --set grid.cells=[28,48,9] --set grid.size=[0.56,0.96,0.18]
     compare few "4 1" "$tall_deep" --set grid.cells=[28,48,7] --set grid.size=[0.56,0.96,0.14] # no pair of lines for each
-    grep -q '"every_rank_does":"all of it"' few-4-1/run.json || fail "run.json does not tell that every rank does all of it"
+    grep -q '"every_rank_does":"all of it"' few-4/run.json || fail "run.json does not tell that every rank does all of it"
     # two levels of the pressure that are cut, and one with an odd number of lines around
     compare levels "2 1,4 2" "$tall_deep" $clear --set grid.cells=[64,32,64] --set grid.size=[1.28,0.64,1.28] --set scheme.columns=uniform --set time.end=0.03
     compare odd "3 1" "$tall_deep" $tall_ring $clear --set grid.cells=[27,48,25] --set grid.size=[0.54,0.96,0.5]
     compare flat_cells "3 1" "$tall_deep" --set grid.cells=[28,60,26]
     compare pocket "2 1,3 2,4 1" "$scenes/ranks_tall_pocket.toml" # sets of knots that are one across the cuts
-    holds_own pocket-4-1
+    holds_own pocket-4
     for scene in "$tall" "$tall_deep"; do
         in_two_parts 0.03 0.06 "$scene"
     done
@@ -383,7 +387,7 @@ schemes)
     # paths of several cells around the ends of the cut axis, beside a ball
     compare ring_3d "3 1" "$deep" --set 'sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}' \
         --set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64] --set 'initial.velocity={name="random",speed=3.0}' --set time.cfl=8
-    holds_own ring_3d-3-1
+    holds_own ring_3d-3
     compare fluxes "3 1" "$flat" --set scheme.advection=conservative
     compare paths "3 1" "$flat" --set scheme.advection=semi_lagrangian --set effects.viscosity.scheme=implicit
     compare alone "3 1" "$flat" --set scheme.poisson.method=cg_mic0 --set time.end=0.04
@@ -395,23 +399,23 @@ moving) # solids on a way that the scene tells, which leads through cuts, and on
         {shape="box",min=[0.05,0.02,0.08],max=[0.12,0.3,0.3],motion={kind="rotation",rate=6.0,axis=[0.0,1.0,0.0],centre=[0.1,0.1,0.2]}}]'
     compare smoke "2 1,4 2" "$scenes/smoke.toml"
     compare paths "3 2,4 1" "$flat" --set "$stirs"
-    holds_own paths-3-2
+    holds_own paths-3
     compare fluxes "3 1" "$flat" --set "$stirs" --set scheme.advection=conservative
     compare deep "2 2,4 1" "$deep" --set "$stirs_deep" --set 'probes=[{name="ball",kind="wall_pressure",at=[0.3,0.1,0.26]}]'
-    holds_own deep-4-1
+    holds_own deep-4
     compare whole "3 1" "$deep" --set "$stirs_deep" --set scheme.poisson.method=cg_mic0
-    holds_whole whole-3-1
+    holds_whole whole-3
     compare water "3 2,4 1" "$water" --set "$stirs"
-    holds_own water-3-2
+    holds_own water-3
     compare water_deep "2 2,4 1" "$water_deep" --set "$stirs_deep"
-    holds_own water_deep-4-1
+    holds_own water_deep-4
     compare water_ring "3 2" "$water_deep" $water_ring $even --set "$stirs_deep" --set scheme.transfer=apic
     compare water_viscous "3 1" "$water_deep" $viscous --set "$stirs_deep"
     compare water_whole "3 1" "$water_deep" --set "$stirs_deep" --set scheme.poisson.method=cg_mic0
-    holds_whole water_whole-3-1
+    holds_whole water_whole-3
     compare tall "3 1" "$tall" --set "$stirs"
     compare tall_deep "2 2,4 1" "$tall_deep" --set "$stirs_deep"
-    holds_own tall_deep-4-1
+    holds_own tall_deep-4
     for scene in "$deep" "$water_deep" "$tall_deep"; do
         in_two_parts 0.03 0.06 "$scene" --set "$stirs_deep"
         poisoned 3 1 "$scene" --set "$stirs_deep"
@@ -436,19 +440,19 @@ surfaces | surfaces_water) # the liquid's surface, which all make together, by e
     fi
     for method in zhu_bridson anisotropic density; do
         compare $method "2 1,3 2" "$water" $(by $method)
-        holds_own $method-3-2
+        holds_own $method-3
     done
     compare deep "2 2,4 1" "$water_deep" $(by density)
     has_surface deep
-    holds_own deep-4-1
+    holds_own deep-4
     compare whole "3 1" "$water" $(by zhu_bridson) --set scheme.poisson.method=cg_mic0
-    holds_whole whole-3-1
+    holds_whole whole-3
     compare grid "2 1,3 2" "$water" $(by zhu_bridson) --set scheme.transfer=grid
     compare set "$every" "$water" $(by level_set)
     has_surface set
-    holds_own set-4-2
+    holds_own set-4
     compare set-deep "$every" "$water_deep" $(by level_set)
-    holds_own set-deep-4-2
+    holds_own set-deep-4
     compare tall-deep "2 1,3 2" "$tall_deep" $(by level_set)
     compare tall "3 1" "$tall" $(by level_set)
     poisoned 3 1 "$water" $(by density)
@@ -710,7 +714,7 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
     done
     ;;
 halo) # NaN in every stale ghost plane, at each halo exchange
-    poisoned 3 2 "$flat"
+    poisoned 3 1 "$flat"
     poisoned 2 1 "$deep"
     poisoned 3 1 "$water"
     poisoned 3 1 "$water" "${frictionless[@]}"
@@ -749,7 +753,7 @@ petsc) # shares its rows: within the tolerance what multigrid finds in one proce
         shift
         ends 0 "$weir" run "$@" --quiet --threads 1 --out $name
         for method in gamg boomeramg icc; do
-            for ranks in 1 2 3; do
+            for ranks in $([ "$size" = ci ] && echo 1 3 || echo 1 2 3); do
                 ends 0 over $ranks "$weir" run "$@" --set scheme.poisson.method=petsc_$method --quiet --threads 1 --out $name-$method-$ranks
                 near $name $name-$method-$ranks
             done
@@ -765,6 +769,9 @@ petsc) # shares its rows: within the tolerance what multigrid finds in one proce
     each water_3d "$water_deep" $exact --set 'probes=[{name="here",kind="point",field="velocity",at=[0.1,0.1,0.1]}]' --set time.end=0.02
     ;;
 ends)
+    # one alone: its scene is another, as on a machine with another disk. It waits ten seconds for the first, beside what follows.
+    over 1 "$weir" run "$flat" --quiet --out alone : -n 1 "$weir" run "$flat" --quiet --out alone --set grid.cell=2 </dev/null >apart.log 2>&1 &
+    alone=$!
     in_two_parts 0.08 0.12 "$flat"
     # a checkpoint that is none, or of another scene: the words of one process, once, and its exit code
     refuses_to_continue() { # WORDS SCENE.. of a restart of broken/
@@ -829,9 +836,8 @@ ends)
     mkdir blocked && touch blocked/probes
     ends 2 over 3 "$weir" run "$flat" --quiet --out blocked
     says probes
-    # one alone: its scene is another, as on a machine with another disk
-    ends 2 over 1 "$weir" run "$flat" --quiet --out alone : -n 1 "$weir" run "$flat" --quiet --out alone --set grid.cell=2
-    says "rank 1 alone: .*unknown key"
+    wait "$alone"
+    [ $? -eq 2 ] && grep -q "rank 1 alone: .*unknown key" apart.log || { cat apart.log; fail "a rank with another scene than the first's"; }
     ;;
 signals)
     long=(--set time.end=100 --set output.every=0.02 --set grid.cells=[48,64] --checkpoint-every 1)

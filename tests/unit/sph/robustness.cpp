@@ -43,6 +43,15 @@ TEST_IN_2D_AND_3D("coincident particles stay finite and inside") {
     }
 }
 
+// Morris 2000, eq. 16, with half the support s as the length: dt = 0.25 sqrt(rho s^3/(2 pi sigma)), here far below the acoustic limit.
+TEST_IN_2D_AND_3D("the step is advised by capillary waves where they are the fastest") {
+    const real sigma = 1e8, s = 0.125;
+    const sph::SphSolver<D> solver(
+        test::sph_box<D>(0.5, 0.5, 0.5, "support = 2.0, tension = true", fmt::format("effects.surface_tension = {{ sigma = {} }}", sigma)));
+    const real dt = 0.25 * std::sqrt(1000 * s * s * s / (2 * pi * sigma));
+    EXPECT_NEAR(solver.advised_dt(), dt, 1e-12 * dt);
+}
+
 TEST_IN_2D_AND_3D("every particle in one cell: nothing leaves") {
     for (const char* scheme : schemes) {
         sph::SphSolver<D> solver(test::sph_box<D>(1, 1, 1, scheme));

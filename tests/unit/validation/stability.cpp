@@ -107,7 +107,7 @@ TEST("an axis may set several keys by powers of its value; what cannot be read i
     stress.base.overrides = {{"grid.size", "[<half>, 1]"}};
     EXPECT_THROW(pushed_to(stress, 3), BadInput);
     EXPECT_NE(
-        refusal("question = \"q\"\n[[axes]]\nname = \"n\"\nlow = 1\nhigh = 2\nhard_because = \"h\"\nkind = \"limit\"\n" + preconditions)
+        refusal("question = \"q\"\n[[axes]]\nname = \"n\"\nlow = 1\nhigh = 2\nhard_because = \"h\"\nkind = \"limit\"\n" + mass_precondition)
             .find("an axis needs a \"key\""),
         std::string::npos);
 }
