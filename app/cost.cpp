@@ -5,9 +5,9 @@
 #include "core/programs.hpp"
 #include "sim/registry.hpp"
 #include "validation/cost/command.hpp"
+#include "validation/cost/cost_estimate.hpp"
 #include "validation/cost/effect_cost.hpp"
-#include "validation/cost/forecast.hpp"
-#include "validation/cost/over_ranks.hpp"
+#include "validation/cost/parallel_estimate.hpp"
 #include "validation/report/command.hpp"
 
 #include <nlohmann/json.hpp>
@@ -41,16 +41,17 @@ std::optional<validation::Link> link_of(const CostArguments& arguments) {
 }
 
 /// Before it runs: what a scene is made of and will cost.
-int forecast(const CostArguments& arguments) {
+int estimate_cost(const CostArguments& arguments) {
     std::vector<scene::Override> overrides;
     for (const auto& text : arguments.set) overrides.push_back(scene::to_override(text));
     const scene::Scene scene = scene::read(validation::scene_named(arguments.plan), sim::schemas(), overrides);
     if (arguments.ranks > 0) sim::require_ranks(scene, arguments.ranks);
-    const validation::Forecast f = validation::forecast(scene);
-    std::fputs(validation::forecast_text(f, scene).c_str(), stdout);
+    const validation::CostEstimate f = validation::estimate_cost(scene);
+    std::fputs(validation::cost_estimate_text(f, scene).c_str(), stdout);
     if (arguments.ranks > 0)
         std::fputs(
-            validation::over_ranks_text(validation::forecast_over_ranks(scene, f, arguments.ranks, link_of(arguments)), f, scene).c_str(),
+            validation::parallel_estimate_text(validation::estimate_in_parallel(scene, f, arguments.ranks, link_of(arguments)), f, scene)
+                .c_str(),
             stdout);
     return exit_success;
 }
@@ -72,7 +73,7 @@ double frames_in_window(const std::filesystem::path& scene, const std::vector<sc
 int cost(CostArguments& arguments) {
     arguments.options.drawn = frames_in_window;
     const auto& options = arguments.chosen();
-    if (!arguments.plan.empty()) return forecast(arguments);
+    if (!arguments.plan.empty()) return estimate_cost(arguments);
     if (arguments.ranks > 0) throw BadInput("--ranks estimates a scene in parallel (MPI): it requires --plan SCENE");
     if (!arguments.effects) return validation::cost_command(options);
     std::vector<std::filesystem::path> folders{arguments.out};

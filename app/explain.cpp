@@ -55,7 +55,7 @@ std::string called(const EffectPlan& effect) {
     return text;
 }
 
-/// What a step costs with the effect and without it: medians over rounds in which both take turns, so that what else the machine does
+/// What a step costs with the effect and without it: medians over interleaved rounds, so that what else the machine does
 /// meets both. Used for effects that have no pass of their own to be timed by.
 double share_by_difference(const scene::Scene& scene, const std::string& effect) {
     Simulation with(scene), without(scene.without_effect(effect));
@@ -93,7 +93,7 @@ std::string effects_text(const Simulation& simulation, const std::vector<Pass>& 
     return text.empty() ? "" : "effects, of a step's time\n" + text;
 }
 
-/// Milliseconds a step of each pass, and its share.
+/// Milliseconds per step of each pass, and its share.
 std::string passes_text(Simulation& simulation) {
     for (int i = 0; i < warm_up_steps && !simulation.finished(); ++i) simulation.step();
     simulation.solver().passes().reset();
@@ -115,7 +115,7 @@ std::string passes_text(Simulation& simulation) {
 std::string surface_text(const Simulation& simulation) {
     const auto surface = reconstruction::reconstruction_of(simulation.scene());
     if (!surface) return "";
-    const auto parts = simulation.solver().show_in_parts();
+    const auto parts = simulation.solver().distributed_view();
     const auto& mesh = surface->make_part(simulation.fields(), simulation.time());
     const std::size_t cells = begins_of_ranks(mesh.corners.size() + mesh.lines.size()).back();
     std::string text = fmt::format("surface reconstruction by {}, per frame\n", simulation.scene().text("output.surface.method"));

@@ -21,13 +21,13 @@ extern "C" void count_signal(int signal) {
 
 }  // namespace
 
-void catch_interrupts(bool over_ranks) {
-    hurries = over_ranks;
+void catch_interrupts(bool in_parallel) {
+    hurries = in_parallel;
     struct sigaction action {};
     action.sa_handler = count_signal;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-    if (over_ranks) sigaction(SIGUSR1, &action, nullptr);
+    if (in_parallel) sigaction(SIGUSR1, &action, nullptr);
     std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -1,6 +1,6 @@
 // weir list WHAT: the names that scenes and commands may use.
 #include "app/commands.hpp"
-#include "app/shown.hpp"
+#include "app/output_fields.hpp"
 #include "backend/device.hpp"
 #include "core/error.hpp"
 #include "sim/registry.hpp"
@@ -64,7 +64,7 @@ void add_list(CLI::App& app, int& exit_code) {
         exit_code = exit_success;
         if (*what == "solvers") list_solvers();
         if (*what == "effects") list_effects();
-        if (*what == "fields") std::fputs((*markdown ? shown_markdown() : shown_text()).c_str(), stdout);
+        if (*what == "fields") std::fputs((*markdown ? output_fields_markdown() : output_fields_text()).c_str(), stdout);
         if (*what == "cases") list_cases(*folder);
         if (*what == "devices") list_devices();
     });

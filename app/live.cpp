@@ -1,6 +1,6 @@
 // weir live SCENE: hands over to the program weir-live, which stands beside this one.
 #include "app/commands.hpp"
-#include "app/hand_over.hpp"
+#include "app/start_program.hpp"
 #include "validation/report/command.hpp"
 
 #include <filesystem>
@@ -38,7 +38,7 @@ void add_live(CLI::App& app, int&) {
     CLI::App* live = app.add_subcommand("live", "Run a scene in a window with interactive forcing; the session is saved as a scene");
     live->prefix_command();
     live->set_help_flag();
-    live->callback([live] { hand_over("weir live", "weir-live", with_scene(live->remaining())); });
+    live->callback([live] { start_program("weir live", "weir-live", with_scene(live->remaining())); });
 }
 
 }  // namespace weir::app

@@ -75,7 +75,7 @@ int flushed(int exit_code) {
     throw weir::OutputError(std::string("cannot write to standard output: ") + std::strerror(errno));
 }
 
-/// Threads that wait spin for a while, which is quicker than sleeping and starves whoever they wait for where the machine is busy: at most
+/// Threads that wait spin for a while, which is quicker than sleeping and starves the threads that they wait for on a busy machine: at most
 /// so long as a pass between two waits takes. Ranks of one machine share its processors. libgomp reads its environment before main; what a
 /// user has set stays. OpenBLAS, which libraries bring, starts threads of its own before main; weir uses none of them, and where memory is
 /// scarce they wait for it for ever.

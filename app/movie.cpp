@@ -28,7 +28,7 @@ namespace {
 struct MovieArguments {
     std::string result, out, range;
     std::vector<std::string> set;
-    picture::Wish wish;
+    picture::Options options;
     int rate = 0;
     bool quiet = false;
 };
@@ -189,7 +189,7 @@ int film(const MovieArguments& arguments) {
     for (std::size_t frame = 0; frame < times.size(); ++frame) {
         if (interruptions() > 0) return exit_interrupted();
         show(frame, times.size(), arguments.quiet);
-        picture::draw_frame(folder, scene, frame, arguments.wish).write(workshop.picture(frame), of_a_film);
+        picture::draw_frame(folder, scene, frame, arguments.options).write(workshop.picture(frame), of_a_film);
     }
     show(times.size(), times.size(), arguments.quiet);
     run_or_refuse(encoder(workshop.folder(), arguments.rate > 0 ? arguments.rate : usual_rate(times), workshop.film()));
@@ -210,21 +210,21 @@ void add_movie(CLI::App& app, int& exit_code) {
     movie->add_option(
         "--out", arguments->out,
         "File to write: .mp4 or .webm (default: RESULT/movie.mp4); the poster is written beside it unless another file has its name");
-    movie->add_option("--field", arguments->wish.field, "Field shown, as in weir picture");
+    movie->add_option("--field", arguments->options.field, "Field shown, as in weir picture");
     movie->add_option("--range", arguments->range,
                       "HIGH or LOW,HIGH: values of the highest and the lowest colour (default: each frame's own)");
     movie
-        ->add_option("--surface", arguments->wish.surface,
+        ->add_option("--surface", arguments->options.surface,
                      "Surface reconstruction of a liquid, with --quality or in 2D (default: that of the scene)")
         ->check(CLI::IsMember({"zhu_bridson", "anisotropic", "density", "level_set"}));
-    movie->add_option("--size", arguments->wish.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
+    movie->add_option("--size", arguments->options.size, "Pixels of the longer side (default: 900; 1280 with --quality)")
         ->check(CLI::Range(32, 8192));
-    movie->add_flag("--quality", arguments->wish.quality, "Ray-traced, as weir picture --quality");
+    movie->add_flag("--quality", arguments->options.quality, "Ray-traced, as weir picture --quality");
     movie->add_option("--rate", arguments->rate, "Frames per second (default: the speed of the run, from 10 to 30)")
         ->check(CLI::Range(1, 120));
     movie->add_flag("--quiet", arguments->quiet, "No progress bar");
     movie->callback([arguments, &exit_code] {
-        if (!arguments->range.empty()) arguments->wish.range = picture::range_of(arguments->range);
+        if (!arguments->range.empty()) arguments->options.range = picture::range_of(arguments->range);
         exit_code = film(*arguments);
     });
 }

@@ -11,7 +11,7 @@
 namespace weir::app {
 
 /// Keeps other runs out of a folder while it lives, which is made where it is missing. In parallel (MPI) the first rank has the lock, as it
-/// writes. Throws BadInput where another run writes there, OutputError where nobody can.
+/// writes. Throws BadInput where another run writes there, OutputError where the folder cannot be written.
 std::unique_ptr<output::FolderLock> lock_folder(const std::filesystem::path& folder);
 
 /// Before a new run writes to a folder: checkpoints of an earlier run there get other names, so that none of them continues this one. The

@@ -16,14 +16,14 @@
 #include "output/run_log.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "rigid/remark.hpp"
-#include "sim/foretold.hpp"
 #include "sim/loop.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
 #include "sim/run_id.hpp"
 #include "sim/shares.hpp"
 #include "sim/solid_cells.hpp"
-#include "validation/cost/over_ranks.hpp"
+#include "validation/cost/parallel_estimate.hpp"
 #include "validation/harness/generic_metrics.hpp"
 #include "validation/report/command.hpp"
 
@@ -91,14 +91,14 @@ std::string explain_ranks(const Simulation& simulation) {
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
     text += simulation.solver().holds_own_planes() ? "; distributed storage: each rank stores and computes its own slab"
                                                    : "; replicated storage: each rank stores the whole grids and computes its own slab";
-    if (!shares.by_all.empty()) text += "; replicated work: " + shares.by_all;
+    if (!shares.replicated_work.empty()) text += "; replicated work: " + shares.replicated_work;
     return text + "\n";
 }
 
 /// The same of ranks that there may be.
 std::string explain_planned_ranks(const scene::Scene& scene, int ranks) {
-    const validation::Forecast f = validation::forecast(scene);
-    return validation::over_ranks_text(validation::forecast_over_ranks(scene, f, ranks), f, scene);
+    const validation::CostEstimate f = validation::estimate_cost(scene);
+    return validation::parallel_estimate_text(validation::estimate_in_parallel(scene, f, ranks), f, scene);
 }
 
 /// What the system says of this process's memory [bytes]; 0 where it does not.
@@ -137,8 +137,8 @@ double memory_for_all(const scene::Scene& scene) {
     return available / (1 + ranks * sim::planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
 
-/// Writes everything that a run leaves behind, and shows how it goes. Over ranks all write frames, and the first the rest; what is looked
-/// at all look at.
+/// Writes everything that a run leaves behind, and shows how it goes. In parallel all ranks write frames, and the first the rest; what is
+/// looked at all look at.
 class Recorder final : public sim::Watcher {
 public:
     /// checkpoint: what was read of the one that is continued [bytes]; 0: none.
@@ -177,7 +177,7 @@ public:
     void on_frame(const Simulation& simulation) override {
         const auto start = clock::now();
         if (frames_) {
-            const auto parts = simulation.solver().show_in_parts();
+            const auto parts = simulation.solver().distributed_view();
             frames_->write(simulation.fields(), simulation.time());
         }
         by_first_rank([&] {
@@ -229,7 +229,7 @@ private:
         const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
                             : simulation.solver().holds_own_planes()     ? Holds::own_planes
                                                                          : Holds::whole_grids;
-        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.by_all, sent, states);
+        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.replicated_work, sent, states);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.steps().add(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
@@ -346,7 +346,7 @@ int simulate(const RunArguments& arguments) {
     const std::string continued = checkpoint ? sim::run_id_of(*checkpoint) : "";
     checkpoint.reset();  // the next one takes its place, and it its room on the disk
     {
-        const auto parts = simulation.solver().show_in_parts();
+        const auto parts = simulation.solver().distributed_view();
         output::check(frame_options(simulation.scene()), simulation.fields());
     }
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());

@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "output/frames.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 
 #include <fmt/format.h>
 
@@ -28,8 +28,8 @@ double room_in(const std::filesystem::path& folder) {
 std::string check_space(const Simulation& simulation, const std::filesystem::path& folder, bool any_size) {
     const scene::Scene& scene = simulation.scene();
     if (!output::can_write_frames()) return "";
-    const auto parts = simulation.solver().show_in_parts();
-    const auto output = sim::foretell_output(scene, simulation.fields());
+    const auto parts = simulation.solver().distributed_view();
+    const auto output = sim::estimate_output(scene, simulation.fields());
     const double room = room_in(folder), to_come = output.frames - static_cast<double>(simulation.frame());
     const double bytes = std::max(0.0, to_come) * output.bytes_of_frame;
     const bool compressed = scene.text("output.compression") != "none";

@@ -13,7 +13,7 @@ void add_stability(CLI::App& app, int& exit_code) {
     CLI::App* command =
         app.add_subcommand("stability", "Find the stability limits of solvers; exit code 1 if a limit falls below its guaranteed range");
     arguments->add_to(*command, "Every case with a stability.toml", "ci: limits within a factor 1.5; full: 1.1", "Folder of results");
-    command->add_flag("--floors", options.floors, "Check only the guaranteed ranges: one run per axis");
+    command->add_flag("--floors", options.guaranteed_only, "Check only the guaranteed ranges: one run per axis");
     command
         ->add_option("--compare", options.compare,
                      "Folder of published limits: one run on either side of each limit; a changed limit fails (exit code 1)")

@@ -1,6 +1,6 @@
 // weir view RESULT: hands over to the program weir-view, which stands beside this one.
 #include "app/commands.hpp"
-#include "app/hand_over.hpp"
+#include "app/start_program.hpp"
 #include "core/error.hpp"
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace weir::app {
 
-void hand_over(const std::string& called, const std::string& program, const std::vector<std::string>& arguments) {
+void start_program(const std::string& called, const std::string& program, const std::vector<std::string>& arguments) {
     const auto path = std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
     if (!std::filesystem::exists(path))
         throw BadInput(
@@ -26,7 +26,7 @@ void add_view(CLI::App& app, int&) {
     CLI::App* view = app.add_subcommand("view", "Open the frames of a run in a window, or with --png draw one");
     view->prefix_command();
     view->set_help_flag();
-    view->callback([view] { hand_over("weir view", "weir-view", view->remaining()); });
+    view->callback([view] { start_program("weir view", "weir-view", view->remaining()); });
 }
 
 }  // namespace weir::app

@@ -1,4 +1,5 @@
-// The mouse in the window of a session: the left button acts with the hand, the right one and the wheel move the camera and size the brush.
+// The mouse in the window of a session: the left button acts with the brush, the right one and the wheel move the camera and size the
+// brush.
 #include "app/live/window.hpp"
 
 #include <vtkCamera.h>
@@ -17,7 +18,7 @@ namespace {
 constexpr double still_after = 0.06;  // [s]
 /// Pulled fluid crosses the brush so often a second.
 constexpr real pulls = 4;  // [1/s]
-/// Columns rise and fall by so many brushes a second where the hand pours and drains.
+/// Columns rise and fall by so many brushes a second where the brush pours and drains.
 constexpr real rises = 1;  // [1/s]
 
 /// Of the water's surface, by volume.
@@ -37,12 +38,12 @@ void Window::on_left_press() {
     at_ = place_under_mouse();
     velocity_ = {};
     moved_ = clock::now();
-    tell_hand();
+    update_brush();
 }
 
 void Window::on_left_release() {
     acts_ = false;
-    tell_hand();
+    update_brush();
 }
 
 void Window::on_right_press() { turns_camera_ = true, interactor_->GetEventPosition(mouse_.data()); }
@@ -61,7 +62,7 @@ void Window::on_move() {
 void Window::on_wheel_forward() { interactor_->GetControlKey() ? zoom(1.1) : resize_brush(1.15); }
 void Window::on_wheel_backward() { interactor_->GetControlKey() ? zoom(1 / 1.1) : resize_brush(1 / 1.15); }
 
-/// The camera turns about the middle of the domain; over a flat scene it glides.
+/// The camera turns about the middle of the domain; over a flat scene it translates.
 void Window::turn_camera(int dx, int dy) {
     vtkCamera* camera = scenery_.renderer()->GetActiveCamera();
     const int* size = window_->GetSize();
@@ -127,7 +128,7 @@ std::array<int, 2> Window::pixel(const Vec<3>& place) {
     return {static_cast<int>(std::lround(at[0])), static_cast<int>(std::lround(at[1]))};
 }
 
-/// The hand is as fast as the mouse: over the clock's time, whatever the simulation keeps up with.
+/// The brush is as fast as the mouse: over the clock's time, whatever the simulation keeps up with.
 void Window::follow_mouse() {
     const Vec<3> now = place_under_mouse();
     const double since = seconds(clock::now() - moved_);
@@ -138,19 +139,19 @@ void Window::follow_mouse() {
     } else if (since > still_after) {
         velocity_ = {};
     }
-    tell_hand();
+    update_brush();
 }
 
-void Window::tell_hand() {
-    if (!shown_->has_hand) return;
-    HandKey key;
-    if (acts_) key = {0, tool_, at_, radius_, velocity_, tool_ == HandKind::pull ? pulls * radius_ : radius_ * rises};
-    if (tool_ == HandKind::heat) key.temperature = temperature_;
-    if (tool_ == HandKind::push || tool_ == HandKind::grab) key.speed = 0;
+void Window::update_brush() {
+    if (!shown_->has_brush) return;
+    BrushKeyframe key;
+    if (acts_) key = {0, tool_, at_, radius_, velocity_, tool_ == BrushKind::pull ? pulls * radius_ : radius_ * rises};
+    if (tool_ == BrushKind::heat) key.temperature = temperature_;
+    if (tool_ == BrushKind::push || tool_ == BrushKind::grab) key.speed = 0;
     scenery_.show_brush(at_, radius_, acts_);
     stale_ = true;
-    runner_->wish([&](Wishes& w) {
-        w.hand = key;
+    runner_->post([&](SessionCommands& w) {
+        w.brush = key;
         if (acts_) w.touch = key;
     });
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double counted_seconds = 0.5;  // what the overlay's figures are means of
 
 /// Of this thread and those that it starts, which the simulation's steps run on: where all processors are busy drawing comes first, and
-/// steps get a third of what it gets, so that a window answers the hand however heavy the scene is.
+/// steps get a third of what it gets, so that a window answers the brush however heavy the scene is.
 constexpr int politeness = 5;
 
 void step_behind_drawing() { setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), politeness); }
@@ -24,7 +24,7 @@ double seconds(std::chrono::steady_clock::duration d) { return std::chrono::dura
 }  // namespace
 
 Runner::Runner(Session& session, bool real_time, bool paused) : session_(session), real_time_(real_time), paused_(paused) {
-    wishes_.paused = paused;
+    commands_.paused = paused;
     field_ = view::main_field(field_names(session.simulation().fields()));
     counted_from_ = clock::now();
     publish();
@@ -35,7 +35,7 @@ Runner::~Runner() { stop(); }
 
 void Runner::stop() {
     if (!thread_.joinable()) return;
-    wish([](Wishes& w) { w.quit = true; });
+    post([](SessionCommands& w) { w.quit = true; });
     thread_.join();
 }
 
@@ -51,60 +51,60 @@ bool Runner::take(std::unique_ptr<Snapshot>& into) {
 void Runner::run() {
     step_behind_drawing();
     for (;;) {
-        Wishes wishes;
+        SessionCommands commands;
         {
             std::unique_lock lock(mutex_);
             const auto idle = [&] {
-                const Wishes& w = wishes_;
+                const SessionCommands& w = commands_;
                 return w.paused && w.single_steps == 0 && !w.reset && !w.checkpoint && !w.quit && w.changes.empty() && w.field.empty();
             };
-            if (!paused_ && wishes_.paused) {  // the last picture says so
+            if (!paused_ && commands_.paused) {  // the last picture says so
                 paused_ = true;
                 lock.unlock();
                 publish();
                 lock.lock();
             }
             wake_.wait(lock, [&] { return !idle(); });
-            if (real_time_ && ahead_ > 0 && !wishes_.paused)
-                wake_.wait_for(lock, std::chrono::duration<double>(ahead_), [&] { return wishes_.quit; });
-            wishes = wishes_;
-            wishes_.reset = wishes_.checkpoint = false;
-            wishes_.changes.clear(), wishes_.field.clear();
-            if (!wishes_.paused || wishes_.single_steps > 0) wishes_.touch.reset();
-            if (wishes_.single_steps > 0) --wishes_.single_steps;
+            if (real_time_ && ahead_ > 0 && !commands_.paused)
+                wake_.wait_for(lock, std::chrono::duration<double>(ahead_), [&] { return commands_.quit; });
+            commands = commands_;
+            commands_.reset = commands_.checkpoint = false;
+            commands_.changes.clear(), commands_.field.clear();
+            if (!commands_.paused || commands_.single_steps > 0) commands_.touch.reset();
+            if (commands_.single_steps > 0) --commands_.single_steps;
         }
-        if (wishes.quit) return;
-        obey(std::move(wishes));
+        if (commands.quit) return;
+        apply(std::move(commands));
     }
 }
 
-void Runner::obey(Wishes wishes) {
+void Runner::apply(SessionCommands commands) {
     const bool was_paused = paused_;
-    paused_ = wishes.paused;
+    paused_ = commands.paused;
     if (was_paused && !paused_) paced_from_ = clock::now(), paced_time_ = 0;
     if (was_paused && !paused_) counted_from_ = clock::now(), counted_time_ = 0, counted_steps_ = 0, ahead_ = -1;
-    if (!wishes.field.empty()) field_ = wishes.field;
-    if (wishes.reset) session_.reset(), failed_ = false, message_ = "restarted", before_.clear(), ahead_ = 0;
-    for (const auto& change : wishes.changes) try {
+    if (!commands.field.empty()) field_ = commands.field;
+    if (commands.reset) session_.reset(), failed_ = false, message_ = "restarted", before_.clear(), ahead_ = 0;
+    for (const auto& change : commands.changes) try {
             session_.steer(change);
             message_ = change.key + " = " + change.value;
         } catch (const BadInput& refused) {
             message_ = refused.what();
         }
-    if (wishes.checkpoint) try {
+    if (commands.checkpoint) try {
             message_ = session_.checkpoint().string() + " is written";
         } catch (const std::exception& error) {
             message_ = error.what();
         }
-    const bool steps = (!paused_ || wishes.single_steps > 0) && !failed_ && !session_.simulation().finished();
-    if (steps) session_.hand(wishes.touch.value_or(wishes.hand)), step();
+    const bool steps = (!paused_ || commands.single_steps > 0) && !failed_ && !session_.simulation().finished();
+    if (steps) session_.brush(commands.touch.value_or(commands.brush)), step();
     bool wanted = !steps;  // nothing moves: the change alone is shown
     {
         const std::lock_guard lock(mutex_);
         wanted = wanted || !fresh_ || paused_;
     }
     if (wanted) publish();
-    if (!steps && !paused_) wish([](Wishes& w) { w.paused = true; });  // the run has ended
+    if (!steps && !paused_) post([](SessionCommands& w) { w.paused = true; });  // the run has ended
 }
 
 void Runner::step() {
@@ -152,10 +152,10 @@ void Runner::publish() {
     s.fields = field_names(fields);
     s.time = simulation.time(), s.steps = simulation.steps(), s.report = report_;
     s.factor = factor_, s.step_ms = step_ms_, s.passes = passes_, s.paused = paused_, s.message = message_;
-    const Hand* hand = simulation.solver().hand();
-    s.has_hand = hand != nullptr;
-    if (hand) s.hand_can = hand->can;
-    if (hand && hand->has(HandKind::heat)) s.temperatures = temperatures_of(fields);
+    const BrushForcing* forcing = simulation.solver().brush();
+    s.has_brush = forcing != nullptr;
+    if (forcing) s.brush_can = forcing->can;
+    if (forcing && forcing->has(BrushKind::heat)) s.temperatures = temperatures_of(fields);
     if (simulation.finished()) s.message = "the run has ended: press r to restart";
     s.transfer_ms = transfer_ms_ = 1e3 * seconds(clock::now() - start);
     const std::lock_guard lock(mutex_);

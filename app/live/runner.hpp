@@ -1,4 +1,4 @@
-// The simulation in a thread of its own. The window leaves wishes and takes the newest snapshot; neither waits for the other.
+// The simulation in a thread of its own. The window posts commands and reads the newest snapshot; neither waits for the other.
 #pragma once
 #include "app/live/session.hpp"
 #include "app/live/snapshot.hpp"
@@ -15,9 +15,9 @@
 namespace weir::live {
 
 /// What the window wants; the runner takes it between two steps.
-struct Wishes {
-    HandKey hand;                  // as it is now
-    std::optional<HandKey> touch;  // the last that acted and that no step has seen yet: what is shorter than a step acts for one
+struct SessionCommands {
+    BrushKeyframe brush;                 // as it is now
+    std::optional<BrushKeyframe> touch;  // the last that acted and that no step has seen yet: what is shorter than a step acts for one
     bool paused = false;
     int single_steps = 0;
     bool reset = false, checkpoint = false, quit = false;
@@ -34,10 +34,10 @@ public:
     void stop();
 
     template <class F>
-    void wish(F&& change) {
+    void post(F&& change) {
         {
             const std::lock_guard lock(mutex_);
-            change(wishes_);
+            change(commands_);
         }
         wake_.notify_one();
     }
@@ -47,7 +47,7 @@ public:
 private:
     using clock = std::chrono::steady_clock;
     void run();
-    void obey(Wishes wishes);
+    void apply(SessionCommands commands);
     void step();
     void publish();
     void count();
@@ -56,7 +56,7 @@ private:
     bool real_time_;
     std::mutex mutex_;
     std::condition_variable wake_;
-    Wishes wishes_;
+    SessionCommands commands_;
     std::unique_ptr<Snapshot> ready_ = std::make_unique<Snapshot>(), back_ = std::make_unique<Snapshot>();
     bool fresh_ = false;
 

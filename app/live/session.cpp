@@ -1,6 +1,6 @@
 #include "app/live/session.hpp"
 
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "geometry/mesh/mesh.hpp"
 #include "output/atomic_file.hpp"
 #include "rigid/bodies.hpp"
@@ -17,8 +17,8 @@ constexpr real no_end = 1e6;  // [s]: eleven days
 
 void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
 
-/// Whether the scene's solver has a hand, on the backend that the scene names.
-bool may_have_hand(const scene::Scene& scene) {
+/// Whether the scene's solver has a brush, on the backend that the scene names.
+bool may_have_brush(const scene::Scene& scene) {
     const auto& effects = sim::kind_named(scene.solver()).schema.effects;
     const bool known = std::any_of(effects.begin(), effects.end(), [](const auto& effect) { return effect.name == "hand"; });
     return known && scene.root().text_or("scheme.backend", "threads").starts_with("threads");
@@ -29,7 +29,7 @@ bool may_have_hand(const scene::Scene& scene) {
 scene::Scene endless(const std::filesystem::path& path, std::vector<scene::Override> overrides) {
     overrides.push_back({"time.end", scene::number_text(no_end)});
     const auto scene = scene::read(path, sim::schemas(), overrides);
-    if (scene.effect("hand") || !may_have_hand(scene)) return scene;
+    if (scene.effect("hand") || !may_have_brush(scene)) return scene;
     overrides.push_back({"effects.hand.rate", "50"});
     return scene::read(path, sim::schemas(), overrides);
 }
@@ -38,21 +38,21 @@ Session::Session(scene::Scene scene, std::filesystem::path folder) : scene_(std:
 
 void Session::reset() { simulation_ = std::make_unique<Simulation>(scene_); }
 
-void Session::hand(HandKey key) {
-    Hand* hand = simulation_->solver().hand();
-    if (!hand) return;
-    if (!hand->has(key.kind)) key = {};
+void Session::brush(BrushKeyframe key) {
+    BrushForcing* forcing = simulation_->solver().brush();
+    if (!forcing) return;
+    if (!forcing->has(key.kind)) key = {};
     key.time = simulation_->time();
-    auto& keys = hand->keys;
+    auto& keys = forcing->keys;
     const auto next =
-        std::upper_bound(keys.begin(), keys.end(), key.time, [](real time, const HandKey& other) { return time < other.time; });
+        std::upper_bound(keys.begin(), keys.end(), key.time, [](real time, const BrushKeyframe& other) { return time < other.time; });
     const bool first = next == keys.begin();
-    const HandKey before = first ? HandKey{} : *std::prev(next);
-    if (key.kind == HandKind::grab) key.body = before.kind == HandKind::grab ? before.body : nearest_body(key.centre);
+    const BrushKeyframe before = first ? BrushKeyframe{} : *std::prev(next);
+    if (key.kind == BrushKind::grab) key.body = before.kind == BrushKind::grab ? before.body : nearest_body(key.centre);
     const bool same =
         key.kind == before.kind &&
-        (key.kind == HandKind::off || (key.centre == before.centre && key.radius == before.radius && key.velocity == before.velocity &&
-                                       key.speed == before.speed && key.temperature == before.temperature));
+        (key.kind == BrushKind::off || (key.centre == before.centre && key.radius == before.radius && key.velocity == before.velocity &&
+                                        key.speed == before.speed && key.temperature == before.temperature));
     if (same) return;
     if (!first && before.time == key.time)
         *std::prev(next) = key;
@@ -77,9 +77,9 @@ int Session::nearest_body(const Vec<3>& place) const {
 std::string Session::text(const std::vector<Change>& more) const {
     const scene::Place given{1, 1};
     scene::Table root = scene_.root();
-    if (const Hand* hand = simulation_->solver().hand()) {
+    if (const BrushForcing* forcing = simulation_->solver().brush()) {
         std::vector<scene::Table> frames;
-        for (const HandKey& key : hand->keys) frames.push_back(geometry::to_table(key, scene_.dim()));
+        for (const BrushKeyframe& key : forcing->keys) frames.push_back(geometry::to_table(key, scene_.dim()));
         root.find_table("effects.hand")->set("keyframes", std::move(frames), given);
     }
     if (root.has("terrain.file"))  // its path is from the scene's folder
@@ -119,7 +119,7 @@ std::filesystem::path Session::checkpoint() const {
 }
 
 std::filesystem::path Session::finish() {
-    hand({});  // it lets go
+    brush({});  // it lets go
     for (const auto& end : ending()) simulation_->set_at(end.time, end.what);
     try {
         while (!simulation_->finished()) simulation_->step();

@@ -1,5 +1,5 @@
-// A run that a hand steers, and that is a scene: what was done is kept as keyframes and changes, and the scene that names them repeats the
-// run bit for bit.
+// A run that is steered interactively and that is a scene: what was done is kept as keyframes and changes, and the scene that names them
+// repeats the run bit for bit.
 #pragma once
 #include "sim/simulation.hpp"
 
@@ -10,7 +10,7 @@
 
 namespace weir::live {
 
-/// A scene for a session: without an end, and with a hand where its solver has one.
+/// A scene for a session: without an end, and with a brush where its solver has one.
 scene::Scene endless(const std::filesystem::path& path, std::vector<scene::Override> overrides);
 
 class Session {
@@ -22,11 +22,11 @@ public:
     const Simulation& simulation() const { return *simulation_; }
     const scene::Scene& scene() const { return scene_; }
     const std::filesystem::path& folder() const { return folder_; }
-    bool has_hand() const { return simulation_->solver().hand() != nullptr; }
+    bool has_brush() const { return simulation_->solver().brush() != nullptr; }
     StepReport step() { return simulation_->step(); }
-    /// From the next step on; its time is now. What the solver does not have is no hand; a hand that takes hold of a body takes the
+    /// From the next step on; its time is now. What the solver does not have is ignored. A brush that grabs a body grabs the
     /// nearest, and keeps that until it lets go.
-    void hand(HandKey key);
+    void brush(BrushKeyframe key);
     /// As soon as it can be told in a scene: some steps from now.
     void steer(const scene::Override& change) { simulation_->set_at(simulation_->horizon(), change); }
     /// From the start again; what was done before is forgotten.
@@ -36,7 +36,7 @@ public:
     std::string text(const std::vector<Change>& more = {}) const;
     /// Where the run stands, as a checkpoint of that scene. The file's path.
     std::filesystem::path checkpoint() const;
-    /// Goes on, with the hand off, to an end that no step before it would have been cut for, and writes session.toml. The file's path.
+    /// Goes on, with the brush off, to an end that no step before it would have been cut for, and writes session.toml. The file's path.
     std::filesystem::path finish();
 
 private:

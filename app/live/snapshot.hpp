@@ -20,8 +20,8 @@ struct Snapshot {
     std::vector<std::pair<std::string, double>> passes;  // ms a step, the longest first
     bool paused = false;
     std::string message;
-    bool has_hand = false;
-    std::array<bool, hand_kinds.size()> hand_can{};
+    bool has_brush = false;
+    std::array<bool, brush_kinds.size()> brush_can{};
     std::array<real, 2> temperatures{infinity, -infinity};  // the coldest and the warmest, where there is any [K]
 
     std::string field;                // what colours show

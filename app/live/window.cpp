@@ -18,7 +18,7 @@ namespace weir::live {
 
 namespace {
 
-constexpr double told_every = 0.25;  // [s]: text is dear to draw
+constexpr double text_every = 0.25;  // [s]: text is expensive to draw
 /// Where the water has not moved a brush or a text may wait so long: what is drawn for them is time that steps do not get.
 constexpr double patience = 1.0 / 40;  // [s]
 
@@ -74,7 +74,7 @@ Window::Window(Session& session, const WindowOptions& options)
     scenery_.look_at_all();
     began_ = moved_ = clock::now();
     runner_ = std::make_unique<Runner>(session, options.real_time, options.paused);
-    if (!options.field.empty()) runner_->wish([&](Wishes& w) { w.field = options.field; });
+    if (!options.field.empty()) runner_->post([&](SessionCommands& w) { w.field = options.field; });
     refresh();
 }
 
@@ -123,7 +123,7 @@ void Window::draw() {
 
 void Window::tell() {
     const double since = seconds(clock::now() - told_);
-    if (since < told_every) return;
+    if (since < text_every) return;
     frames_a_second_ = frames_counted_ / std::max(since, 1e-3);
     frames_counted_ = 0;
     told_ = clock::now();
@@ -145,36 +145,36 @@ void Window::tell() {
     if (s.report.iterations > 0) text += fmt::format("   {} iterations", s.report.iterations);
     if (!std::isnan(s.report.density_error)) text += fmt::format("   density error {:.2g} %", 100 * s.report.density_error);
     if (!std::isnan(s.report.max_divergence)) text += fmt::format("   divergence {:.1e} 1/s", s.report.max_divergence);
-    text += "\n" + told_of_hand(s);
+    text += "\n" + brush_text(s);
     if (!knobs_.empty()) text += fmt::format("   {} = {:.4g}", knobs_.chosen().name(), knobs_.chosen().value());
     scenery_.tell(text + "   F1: keys", help_ ? help_text : "");
 }
 
-std::string Window::told_of_hand(const Snapshot& s) const {
-    if (!s.has_hand) return "this solver has no interactive forcing";
+std::string Window::brush_text(const Snapshot& s) const {
+    if (!s.has_brush) return "this solver has no interactive forcing";
     const auto tool = static_cast<std::size_t>(tool_);
-    if (!s.hand_can[tool]) {
-        const char* why = tool_ == HandKind::heat   ? "the fluid of this scene carries no heat"
-                          : tool_ == HandKind::grab ? "no body at the brush to hold"
-                                                    : "this model of a height field has no currents to push";
-        return fmt::format("brush: no {}: {}", hand_kinds[tool], why);
+    if (!s.brush_can[tool]) {
+        const char* why = tool_ == BrushKind::heat   ? "the fluid of this scene carries no heat"
+                          : tool_ == BrushKind::grab ? "no body at the brush to hold"
+                                                     : "this model of a height field has no currents to push";
+        return fmt::format("brush: no {}: {}", brush_kinds[tool], why);
     }
-    if (tool_ == HandKind::heat) return fmt::format("brush: {} to {:.4g} K, {:.3g} m", cools_ ? "cool" : "heat", temperature_, radius_);
-    return fmt::format("hand: {}, {:.3g} m", hand_kinds[tool], radius_);
+    if (tool_ == BrushKind::heat) return fmt::format("brush: {} to {:.4g} K, {:.3g} m", cools_ ? "cool" : "heat", temperature_, radius_);
+    return fmt::format("brush: {}, {:.3g} m", brush_kinds[tool], radius_);
 }
 
-void Window::choose_tool(HandKind tool) {
-    cools_ = tool == HandKind::heat && tool_ == HandKind::heat && !cools_;
+void Window::choose_tool(BrushKind tool) {
+    cools_ = tool == BrushKind::heat && tool_ == BrushKind::heat && !cools_;
     tool_ = tool;
     temperature_ = cools_ ? std::max(1.0, shown_->temperatures[0] - warmer) : shown_->temperatures[1] + warmer;
-    tell_hand();
+    update_brush();
 }
 
 void Window::press(const std::string& key) {
-    if (key == "space") runner_->wish([&](Wishes& w) { w.paused = paused_ = !paused_; });
-    if (key == "period") runner_->wish([&](Wishes& w) { w.paused = paused_ = true, ++w.single_steps; });
-    if (key == "r") runner_->wish([](Wishes& w) { w.reset = true; }), knobs_ = Knobs(session_.scene());
-    if (key == "s") runner_->wish([](Wishes& w) { w.checkpoint = true; });
+    if (key == "space") runner_->post([&](SessionCommands& w) { w.paused = paused_ = !paused_; });
+    if (key == "period") runner_->post([&](SessionCommands& w) { w.paused = paused_ = true, ++w.single_steps; });
+    if (key == "r") runner_->post([](SessionCommands& w) { w.reset = true; }), knobs_ = Knobs(session_.scene());
+    if (key == "s") runner_->post([](SessionCommands& w) { w.checkpoint = true; });
     if (key == "p") picture();
     if (key == "c") next_field();
     if (key == "v") scenery_.look_at_all();
@@ -184,9 +184,9 @@ void Window::press(const std::string& key) {
     if (key == "Left") knobs_.choose(-1);
     if (key == "Right") knobs_.choose(1);
     if (key == "Up" || key == "Down")
-        if (auto change = knobs_.turn(key == "Up" ? 1 : -1)) runner_->wish([&](Wishes& w) { w.changes.push_back(*change); });
-    for (std::size_t tool = 1; tool < hand_kinds.size(); ++tool)
-        if (key == std::to_string(tool)) choose_tool(static_cast<HandKind>(tool));
+        if (auto change = knobs_.turn(key == "Up" ? 1 : -1)) runner_->post([&](SessionCommands& w) { w.changes.push_back(*change); });
+    for (std::size_t tool = 1; tool < brush_kinds.size(); ++tool)
+        if (key == std::to_string(tool)) choose_tool(static_cast<BrushKind>(tool));
     told_ = {};
     stale_ = true;
     if (key == "q" || key == "Escape") interactor_->TerminateApp();
@@ -202,7 +202,7 @@ void Window::on_timer() {
 
 void Window::next_field() {
     if (shown_->fields.empty()) return;
-    runner_->wish([&](Wishes& w) { w.field = view::next_field(shown_->fields, shown_->field); });
+    runner_->post([&](SessionCommands& w) { w.field = view::next_field(shown_->fields, shown_->field); });
 }
 
 void Window::picture() {

@@ -1,4 +1,4 @@
-// The window of a session: it draws the newest snapshot as often as it can, and turns mouse and keys into wishes of the runner. It never
+// The window of a session: it draws the newest snapshot as often as it can, and turns mouse and keys into commands of the runner. It never
 // waits for a step.
 #pragma once
 #include "app/live/knobs.hpp"
@@ -56,7 +56,7 @@ public:
     void write(const std::filesystem::path& png);
 
     const Snapshot& shown() const { return *shown_; }
-    HandKind tool() const { return tool_; }
+    BrushKind tool() const { return tool_; }
     real radius() const { return radius_; }
     const FrameCosts& costs() const { return costs_; }
     const std::optional<std::filesystem::path>& pictured() const { return pictured_; }
@@ -84,9 +84,9 @@ private:
     Vec<3> place_under_mouse();
     Vec<3> seen_at(const std::array<int, 2>& pixel, double depth);
     void follow_mouse();
-    void tell_hand();
-    void choose_tool(HandKind tool);
-    std::string told_of_hand(const Snapshot& s) const;
+    void update_brush();
+    void choose_tool(BrushKind tool);
+    std::string brush_text(const Snapshot& s) const;
     void draw();
     void tell();
 
@@ -97,7 +97,7 @@ private:
     std::unique_ptr<Snapshot> shown_ = std::make_unique<Snapshot>();
     vtkSmartPointer<vtkRenderWindow> window_ = quick_window();
     vtkNew<vtkRenderWindowInteractor> interactor_;
-    HandKind tool_ = HandKind::push;
+    BrushKind tool_ = BrushKind::push;
     bool acts_ = false, turns_camera_ = false, help_ = false, paused_ = false, stale_ = true;
     real radius_ = 0.1, temperature_ = 0;
     bool cools_ = false;

@@ -42,24 +42,24 @@ Range range_of(const std::string& text) {
     return count == 0 ? Range{{}, ends[0]} : Range{ends[0], ends[1]};
 }
 
-Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish) {
+Canvas draw(const scene::Scene& scene, output::FrameData frame, const Options& options) {
     particles_as_markers(frame, scene);
-    if (wish.field.empty() || wish.field == "water") level_set_as_markers(frame);
-    if (wish.grid && scene.dim() != 2) throw BadInput("--grid draws the grid of 2D runs only");
-    const std::string field = wish.field.empty() ? best_field(frame) : wish.field;
+    if (options.field.empty() || options.field == "water") level_set_as_markers(frame);
+    if (options.grid && scene.dim() != 2) throw BadInput("--grid draws the grid of 2D runs only");
+    const std::string field = options.field.empty() ? best_field(frame) : options.field;
     const bool columns = is_of_columns(frame);
     if (field == "water" && !columns && !frame.particles.count("markers") && !has_sea(frame))
         throw BadInput("this run has neither markers nor a surface to draw as water");
-    const int size = wish.size > 0 ? wish.size : wish.quality ? usual_size_of_quality : usual_size;
-    const View view{scene, frame, field, size, wish.range, wish.surface, wish.grid};
-    if (!wish.surface.empty() && (field != "water" || columns || (scene.dim() == 3 && !wish.quality)))
+    const int size = options.size > 0 ? options.size : options.quality ? usual_size_of_quality : usual_size;
+    const View view{scene, frame, field, size, options.range, options.surface, options.grid};
+    if (!options.surface.empty() && (field != "water" || columns || (scene.dim() == 3 && !options.quality)))
         throw BadInput("--surface applies to liquids in 2D, and in 3D with --quality");
-    if (wish.quality) return draw_with_rays(view, columns);
+    if (options.quality) return draw_with_rays(view, columns);
     return columns ? draw_columns(view) : scene.dim() == 2 ? draw_2d(view) : draw_3d(view);
 }
 
-Canvas draw_frame(const std::filesystem::path& folder, const scene::Scene& scene, std::size_t number, const Wish& wish) {
-    return draw(scene, output::read_frame(folder, number, scene.dim()), wish);
+Canvas draw_frame(const std::filesystem::path& folder, const scene::Scene& scene, std::size_t number, const Options& options) {
+    return draw(scene, output::read_frame(folder, number, scene.dim()), options);
 }
 
 }  // namespace weir::picture

@@ -19,7 +19,7 @@ struct Range {
 Range range_of(const std::string& text);
 
 /// How a frame is to be drawn.
-struct Wish {
+struct Options {
     std::string field{};  // empty: what the run is about
     Range range{};
     int size = 0;  // 0: the usual one
@@ -28,8 +28,8 @@ struct Wish {
 };
 
 /// Throws BadInput where the frame has not what is asked for.
-Canvas draw(const scene::Scene& scene, output::FrameData frame, const Wish& wish);
+Canvas draw(const scene::Scene& scene, output::FrameData frame, const Options& options);
 /// A frame of a folder.
-Canvas draw_frame(const std::filesystem::path& folder, const scene::Scene& scene, std::size_t number, const Wish& wish);
+Canvas draw_frame(const std::filesystem::path& folder, const scene::Scene& scene, std::size_t number, const Options& options);
 
 }  // namespace weir::picture

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include <X11/Xlib.h>  // in a file of its own: its macros are everybody's words
+#include <X11/Xlib.h>  // in a file of its own: its macros have common names
 
 namespace weir::view {
 

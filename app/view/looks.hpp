@@ -50,7 +50,7 @@ public:
     void join(vtkRenderer* renderer);
     void forget() { low_ = infinity, high_ = -infinity; }
     void widen(real low, real high);
-    /// Colours by the values seen, of this field; whether they differ from those of before.
+    /// Colours by the values seen, of this field; whether they differ from the previous ones.
     bool set(const std::string& field);
     bool empty() const { return low_ > high_; }
     /// Values of the two ends.

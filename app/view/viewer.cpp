@@ -19,12 +19,12 @@ namespace {
 
 constexpr int milliseconds_a_frame = 40;
 
-std::string chosen_field(const std::string& asked, const Frame& frame) {
+std::string chosen_field(const std::string& requested, const Frame& frame) {
     const auto names = field_names(frame);
     const auto has = [&](const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-    if (!asked.empty() && !has(asked))
-        throw BadInput(fmt::format("this run has no field \"{}\"; known: {}", asked, fmt::join(names, ", ")));
-    return asked.empty() ? main_field(names) : asked;
+    if (!requested.empty() && !has(requested))
+        throw BadInput(fmt::format("this run has no field \"{}\"; known: {}", requested, fmt::join(names, ", ")));
+    return requested.empty() ? main_field(names) : requested;
 }
 
 }  // namespace

@@ -137,5 +137,5 @@ int main(int argc, char** argv) {
         least = std::min(least, m.median_ms / m.cells);
         most = std::max(most, m.median_ms / m.cells);
     }
-    if (!csv) fmt::print("cost per cell, dearest over cheapest size: {:.2f}\n", most / least);
+    if (!csv) fmt::print("cost per cell, most expensive over cheapest size: {:.2f}\n", most / least);
 }

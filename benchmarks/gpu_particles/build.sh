@@ -22,7 +22,7 @@ cd "$root/solvers"
 {
     echo '#include "benchmarks/gpu_particles/load_opencl.hpp"'
     printf '#include "%s"\n' core/{checkpoint,hex_number,parallel,plane_store,slabs}.cpp geometry/*.cpp backend/{choice,opencl}.cpp matter/ambient.cpp pbf/{bodies,options}.cpp \
-        particles/{cell_sort,device_bodies,device_heat,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,hand_over,heat,kernels}.cpp \
+        particles/{cell_sort,device_bodies,device_heat,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,heat,kernels,particle_exchange}.cpp \
         particles/{scheme,solid_terms,solver,squeezed,walls}.cpp
 } >"$work/solvers.cpp"
 printf '#include "%s"\n' particles/{beside_bodies,bodies_in_liquid,device_ice,ice,ice_pieces,vapour}.cpp geometry/mesh/mesh.cpp rigid/*.cpp >"$work/pieces.cpp"

@@ -135,7 +135,7 @@ particles::Fluid<D> measure_steps(const Arguments& arguments, const pbf::Options
     csv.row("step", 1, median, moved, moved / (1e-3 * median) / bandwidth);
     std::printf(
         "%dD %9.0f particles %2d iterations: %9.3f ms a step (kernels %9.3f), %8.3g particles x iterations a second, %5.1f neighbours, "
-        "%4zu bytes a particle, %4.1f%% of copy bandwidth\n",
+        "%4zu bytes per particle, %4.1f%% of copy bandwidth\n",
         D, count, csv.iterations, median, kernels, count * csv.iterations / (1e-3 * median), n, device.plan().bytes_per_particle(),
         100 * moved / (1e-3 * median) / bandwidth);
     std::fflush(stdout);

@@ -129,7 +129,7 @@ private:
     std::array<int, 4> cells_{};
     Places begin_;  // sorted
     Memory params_, walls_, state_, terms_, rests_, sorted_cell_, start_, a_, b_, density_, multiplier_, neighbours_, list_, needed_,
-        clamps_;
+        corrections_;
 };
 
 template <int D>
@@ -146,7 +146,7 @@ PairPasses<D>::PairPasses(const pbf::Options& options, const particles::Fluid<D>
     const auto walls = particles::wall_params<particles::single::WallParams>(options, fluid.domain);
     params_ = copy_of(&params, 1), walls_ = copy_of(&walls, 1);
     state_ = terms_ = rests_ = device_->alloc(1024);  // read where axes repeat, solids are, or something boils: nowhere here
-    clamps_ = device_->alloc(8);
+    corrections_ = device_->alloc(8);
     sort(fluid, dt);
     const auto n = static_cast<std::size_t>(count_);
     a_ = device_->alloc(n * 16), b_ = device_->alloc(n * 16);
@@ -208,7 +208,7 @@ typename PairPasses<D>::Places PairPasses<D>::after(int iterations, bool over_ce
             device_->launch("lambda", n, group,
                             {count_, count_, params_, walls_, terms_, rests_, a_, neighbours_, list_, b_, density_, multiplier_});
             device_->launch("correct", n, group,
-                            {count_, count_, state_, params_, walls_, terms_, rests_, clamps_, b_, neighbours_, list_, a_});
+                            {count_, count_, state_, params_, walls_, terms_, rests_, corrections_, b_, neighbours_, list_, a_});
         }
     Places places(n);
     device_->download(places.data(), a_, n * 16);

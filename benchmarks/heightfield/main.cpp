@@ -36,7 +36,7 @@ std::vector<Problem> problems(int cells) {
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Seconds a step: the median of blocks that take a tenth of a second each.
-double seconds_a_step(Solver& solver, const real dt) {
+double seconds_per_step(Solver& solver, const real dt) {
     constexpr int blocks = 9;
     constexpr double long_enough = 0.1;
     for (int i = 0; i < 3; ++i) solver.step(dt);
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
         for (const int count : only > 0 ? std::vector<int>{only} : std::vector<int>{1, 2}) {
             set_threads(count);
             const auto solver = kind.make(scene::parse(problem.scene, problem.name, {kind.schema}));
-            const double each = seconds_a_step(*solver, 0.5 * solver->advised_dt());
+            const double each = seconds_per_step(*solver, 0.5 * solver->advised_dt());
             const double columns = 1e-6 * cells * static_cast<double>(cells) / each;
             const char* line =
                 csv ? "\"{}\",{},{},{:.4f},{:.1f},{}\n" : "{:24} {:5}^2  {} threads {:9.3f} ms a step {:9.1f} M columns/s {:10} bytes\n";

@@ -93,7 +93,7 @@ Result run(const Job& job) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Milliseconds a step of the particle solvers"};
+    CLI::App app{"Milliseconds per step of the particle solvers"};
     std::vector<std::string> solvers{"pbf", "sph"}, isas{"auto"};
     std::vector<int> cells{32, 50}, iterations{4, 8}, threads{2, 1};
     bool csv = false, passes = false;

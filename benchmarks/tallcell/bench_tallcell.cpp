@@ -1,6 +1,6 @@
-// A wave over deep water by tall cells, single and stacked, and by the uniform grid with the same cells at the surface: milliseconds a step
-// and in each pass of it, bytes, and how far the surfaces of tall cells and uniform grid are apart. Solvers take turns step by step, so
-// that the machine is the same for all.
+// A wave over deep water by tall cells, single and stacked, and by the uniform grid with the same cells at the surface: milliseconds per
+// step and in each pass of it, bytes, and how far the surfaces of tall cells and uniform grid are apart. Solvers are interleaved step by
+// step, so that the machine is the same for all.
 //   bench_tallcell [--csv] [--steps N] [--threads N] [--surface N] [--depth N] [--layers N] [--only stacked|single|uniform]
 #include "core/parallel.hpp"
 #include "tallcell/solver.hpp"

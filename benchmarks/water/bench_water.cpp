@@ -1,4 +1,4 @@
-// Milliseconds a step, and in each pass of it, of whole water simulations: two dam breaks, each after a start-up that is not measured.
+// Milliseconds per step, and in each of its passes, of whole water simulations: two dam breaks, each after a start-up that is not measured.
 //   bench_water [--csv] [--steps N] [--threads N] [--dim 2|3]
 #include "core/parallel.hpp"
 #include "water/solver.hpp"

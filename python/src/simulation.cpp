@@ -4,7 +4,7 @@
 #include "app/picture/draw.hpp"
 #include "core/parallel.hpp"
 #include "output/read_frame.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
 #include "sim/solid_cells.hpp"
 #include "validation/report/command.hpp"

@@ -146,7 +146,7 @@ class Simulation:
         [0, -1.6]). Keys that may change are marked so in the manual; others raise BadInput with the reason."""
         self._core.set(key, _scene.value(value), at)
 
-    # --- a hand in it
+    # --- interactive forcing
     @property
     def editable(self) -> "list[str]":
         """The fields that edit() takes."""

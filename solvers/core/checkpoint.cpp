@@ -120,8 +120,8 @@ private:
         const std::uint64_t last = end() * (rank + 1) / ranks;
         std::uint64_t hash = checksum_of_nothing;
         const int peer = slabs().rank();
-        const Parcel from_before{peer - 1, nullptr, 0, &hash, sizeof hash}, to_next{peer + 1, &hash, sizeof hash, nullptr, 0};
-        if (rank > 0) slabs().trade({&from_before, 1});
+        const Message from_before{peer - 1, nullptr, 0, &hash, sizeof hash}, to_next{peer + 1, &hash, sizeof hash, nullptr, 0};
+        if (rank > 0) slabs().exchange({&from_before, 1});
         std::vector<std::byte> room(piece);
         bool whole = true;
         try {
@@ -133,7 +133,7 @@ private:
         } catch (const BadInput&) {  // the next rank waits for its part of the checksum
             whole = false;
         }
-        if (rank + 1 < ranks) slabs().trade({&to_next, 1});
+        if (rank + 1 < ranks) slabs().exchange({&to_next, 1});
         if (!whole || rank + 1 < ranks) return whole;
         std::uint64_t at = end();
         return number(at) == hash;

@@ -62,7 +62,7 @@ struct Effect {
     virtual void needs(FieldPlan&) const {}     // names fields; allocates nothing
     virtual void apply(State& s, real dt) = 0;  // one pass: one virtual call per pass, none per cell
     /// The explicit half (over dt) of a trapezoidal step along trajectories; it acts at the departure points. The other half is apply's.
-    virtual void depart(State& s, real dt) {
+    virtual void apply_before_advection(State& s, real dt) {
         if (stage() == Stage::force) apply(s, dt);
     }
     virtual real max_dt(const State&) const { return infinity; }  // its own stability limit [s]
@@ -117,12 +117,12 @@ public:
             e.effect->apply(s, dt);
         }
     }
-    /// Runs in the reverse order: depart followed by apply is then symmetric in time.
-    void depart(Stage stage, State& s, real dt, Passes& passes) const {
+    /// Runs in the reverse order: apply_before_advection followed by apply is then symmetric in time.
+    void apply_before_advection(Stage stage, State& s, real dt, Passes& passes) const {
         const auto& list = at_[static_cast<std::size_t>(stage)];
         for (auto e = list.rbegin(); e != list.rend(); ++e) {
             const auto timed = passes.time(e->pass);
-            e->effect->depart(s, dt);
+            e->effect->apply_before_advection(s, dt);
         }
     }
     real max_dt(const State& s) const {

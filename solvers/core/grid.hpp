@@ -80,7 +80,7 @@ template <class F>
 const std::vector<real>& parts_of_planes(int planes, F&& f) {
     auto& part = reduction_scratch(static_cast<std::size_t>(planes));
     for_each_plane(0, planes, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
-    if (over_ranks()) slabs().gather(*own_share.cut, {part.data(), sizeof(real), planes});
+    if (is_distributed()) slabs().gather(*own_share.cut, {part.data(), sizeof(real), planes});
     return part;
 }
 }  // namespace detail
@@ -101,17 +101,17 @@ template <class T, int D>
 Planes planes_of(Grid<T, D>& q) {
     return {q.data(), sizeof(T) * static_cast<std::size_t>(q.stride(D - 1)), q.extent()[D - 1], 0, q.store().held()};
 }
-/// Halo exchange: fills the `deep` ghost planes on both sides of this rank's subdomain.
+/// Halo exchange: fills `ghost_planes` planes on both sides of this rank's subdomain.
 template <class T, int D>
-void refresh(Grid<T, D>& q, bool ring, int deep = 1) {
-    if (!over_ranks()) return;
-    q.store().open(deep, ring);
-    slabs().refresh(*detail::own_share.cut, planes_of(q), deep, ring);
+void refresh(Grid<T, D>& q, bool ring, int ghost_planes = 1) {
+    if (!is_distributed()) return;
+    q.store().open(ghost_planes, ring);
+    slabs().refresh(*detail::own_share.cut, planes_of(q), ghost_planes, ring);
 }
 /// All-gather: every rank receives all planes.
 template <class T, int D>
 void gather(Grid<T, D>& q) {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     q.store().open_all();
     slabs().gather(*detail::own_share.cut, planes_of(q));
 }

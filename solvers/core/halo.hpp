@@ -38,17 +38,17 @@ struct PlaneRange {
     bool operator==(const PlaneRange&) const = default;
 };
 
-/// The planes of an array of `count` planes that rank `to` receives from rank `from` to fill `deep` ghost planes on both sides. `ring`:
+/// The planes of an array of `count` planes that rank `to` receives from rank `from` to fill `ghost_planes` planes on both sides. `ring`:
 /// also around the ends of a periodic axis, where plane n of faces is plane 0.
-inline std::vector<PlaneRange> halo_from(const Cut& cut, int from, int to, int count, int deep, bool ring) {
+inline std::vector<PlaneRange> halo_from(const Cut& cut, int from, int to, int count, int ghost_planes, bool ring) {
     const int n = cut.planes(), begin = cut.begin(to), end = cut.end(to, n);
     std::vector<char> wanted(static_cast<std::size_t>(count), 0);
     const auto want = [&](int plane) {
         if (plane >= 0 && plane < count) wanted[static_cast<std::size_t>(plane)] = 1;
         if (ring && (plane < 0 || plane >= n)) wanted[static_cast<std::size_t>((plane % n + n) % n)] = 1;
     };
-    deep = std::min(deep, n);
-    for (int k = 1; k <= deep; ++k) want(begin - k), want(end + k - 1);
+    ghost_planes = std::min(ghost_planes, n);
+    for (int k = 1; k <= ghost_planes; ++k) want(begin - k), want(end + k - 1);
     for (int plane = begin; plane < cut.end(to, count); ++plane) wanted[static_cast<std::size_t>(plane)] = 0;
     std::vector<PlaneRange> list;
     for (int plane = cut.begin(from); plane < cut.end(from, count); ++plane) {

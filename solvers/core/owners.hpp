@@ -31,23 +31,23 @@ using ListsOfRanks = std::vector<std::vector<T>>;
 /// Personalized all-to-all: sends each rank its list and receives the lists meant for this rank; this rank's own list stays. A table of the
 /// list lengths is gathered first.
 template <class T>
-ListsOfRanks<T> trade_lists(ListsOfRanks<T> lists) {
+ListsOfRanks<T> exchange_lists(ListsOfRanks<T> lists) {
     const std::size_t ranks = lists.size(), self = static_cast<std::size_t>(slabs().rank());
     std::vector<std::size_t> counts(ranks * ranks), rows(ranks + 1);
     std::iota(rows.begin(), rows.end(), std::size_t{0});
     for (std::size_t r = 0; r < ranks; ++r) counts[self * ranks + r] = lists[r].size();
     slabs().gather_parts(counts.data(), ranks * sizeof(std::size_t), rows);
-    ListsOfRanks<T> brought(ranks);
-    std::vector<Parcel> parcels;
+    ListsOfRanks<T> received(ranks);
+    std::vector<Message> messages;
     for (std::size_t r = 0; r < ranks; ++r) {
         if (r == self) continue;
-        brought[r].resize(counts[r * ranks + self]);
-        parcels.push_back(
-            {static_cast<int>(r), lists[r].data(), lists[r].size() * sizeof(T), brought[r].data(), brought[r].size() * sizeof(T)});
+        received[r].resize(counts[r * ranks + self]);
+        messages.push_back(
+            {static_cast<int>(r), lists[r].data(), lists[r].size() * sizeof(T), received[r].data(), received[r].size() * sizeof(T)});
     }
-    slabs().trade(parcels);
-    brought[self] = std::move(lists[self]);
-    return brought;
+    slabs().exchange(messages);
+    received[self] = std::move(lists[self]);
+    return received;
 }
 
 }  // namespace weir

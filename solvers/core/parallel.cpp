@@ -20,10 +20,10 @@ int threads() {
 
 int set_threads(int count) { return std::exchange(chosen_threads, std::clamp(count, 0, most_threads)); }
 
-ThreadsWorth::ThreadsWorth(long cells) : before_(worth_of_work) {
-    worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_a_thread, 1, 1 << 20));
+ProblemSizeScope::ProblemSizeScope(long cells) : before_(worth_of_work) {
+    worth_of_work = static_cast<int>(std::clamp<long>(cells / cells_per_thread, 1, 1 << 20));
 }
-ThreadsWorth::~ThreadsWorth() { worth_of_work = before_; }
+ProblemSizeScope::~ProblemSizeScope() { worth_of_work = before_; }
 
 bool thread_count_is_set() { return chosen_threads > 0; }
 

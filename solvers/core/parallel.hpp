@@ -10,21 +10,21 @@
 namespace weir {
 
 /// Number of threads of every parallel loop of the library; at least 1. Default: OpenMP's own, or fewer where a simulation has too little
-/// work for them (ThreadsWorth). A number that was set is used as it is. Threads that wait for the next loop spin as long as OpenMP's
+/// work for them (ProblemSizeScope). A number that was set is used as it is. Threads that wait for the next loop spin as long as OpenMP's
 /// runtime lets them. A program that embeds the library sets GOMP_SPINCOUNT (or OMP_WAIT_POLICY) in its environment before it starts, since
 /// libgomp reads them before main.
 int threads();
 int set_threads(int count);  // 0: the default again; returns the previous setting
 
-/// Scope in which loops of the calling thread belong to a problem of this many cells. Below cells_a_thread cells per thread,
+/// Scope in which loops of the calling thread belong to a problem of this many cells. Below cells_per_thread cells per thread,
 /// synchronization takes longer than the shared work saves. No effect where a number of threads was set.
-class ThreadsWorth {
+class ProblemSizeScope {
 public:
-    static constexpr long cells_a_thread = 2048;
-    explicit ThreadsWorth(long cells);
-    ~ThreadsWorth();
-    ThreadsWorth(const ThreadsWorth&) = delete;
-    ThreadsWorth& operator=(const ThreadsWorth&) = delete;
+    static constexpr long cells_per_thread = 2048;
+    explicit ProblemSizeScope(long cells);
+    ~ProblemSizeScope();
+    ProblemSizeScope(const ProblemSizeScope&) = delete;
+    ProblemSizeScope& operator=(const ProblemSizeScope&) = delete;
 
 private:
     int before_;

@@ -45,8 +45,8 @@ void Reserved::close(std::size_t begin, std::size_t end) {
     mprotect(data_ + begin, end - begin, PROT_NONE);
 }
 
-std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int deep, bool ring) {
-    const int n = cut.planes(), begin = cut.begin(rank) - std::min(deep, n), end = cut.end(rank, n) + std::min(deep, n);
+std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int ghost_planes, bool ring) {
+    const int n = cut.planes(), begin = cut.begin(rank) - std::min(ghost_planes, n), end = cut.end(rank, n) + std::min(ghost_planes, n);
     std::vector<char> held(static_cast<std::size_t>(count + 2 * margin), 0);
     const auto hold = [&](int plane) {
         if (plane >= -margin && plane < count + margin) held[static_cast<std::size_t>(plane + margin)] = 1;
@@ -61,13 +61,13 @@ std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, i
     return held;
 }
 
-std::vector<char> planes_near(int count, int deep, bool ring) {
-    if (!over_ranks()) return {};
+std::vector<char> planes_near(int count, int ghost_planes, bool ring) {
+    if (!is_distributed()) return {};
     const Cut& cut = *detail::own_share.cut;
     const int n = cut.planes(), rank = slabs().rank();
     std::vector<char> near(static_cast<std::size_t>(count), 0);
-    deep = std::min(deep, n);
-    for (int plane = cut.begin(rank) - deep; plane < cut.end(rank, count) + deep; ++plane) {
+    ghost_planes = std::min(ghost_planes, n);
+    for (int plane = cut.begin(rank) - ghost_planes; plane < cut.end(rank, count) + ghost_planes; ++plane) {
         if (plane >= 0 && plane < count) near[static_cast<std::size_t>(plane)] = 1;
         if (ring && (plane < 0 || plane >= n)) near[static_cast<std::size_t>((plane % n + n) % n)] = 1;  // plane n of faces is plane 0
     }

@@ -31,13 +31,13 @@ private:
     std::size_t mapped_ = 0;
 };
 
-/// Which planes of an array a rank stores: its own, `deep` ghost planes on both sides, also around a periodic axis, and the planes beyond
+/// Which planes of an array a rank stores: its own, `ghost_planes` planes on both sides, also around a periodic axis, and the planes beyond
 /// the ends of the axis that the ghosts reach. `margin`: planes before the first and after the last. Entry 0 is plane -margin.
-std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int deep, bool ring);
+std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int ghost_planes, bool ring);
 
-/// Marks, of `count` planes, this rank's and `deep` ghost planes on both sides, also around the ends of a periodic axis. Empty with one
+/// Marks, of `count` planes, this rank's and `ghost_planes` planes on both sides, also around the ends of a periodic axis. Empty with one
 /// rank: all planes are near.
-std::vector<char> planes_near(int count, int deep, bool ring);
+std::vector<char> planes_near(int count, int ghost_planes, bool ring);
 
 namespace detail {
 /// Returns whether an array of this many planes that is constructed now has distributed storage.
@@ -79,16 +79,16 @@ public:
     }
     bool windowed() const { return window_ != nullptr; }
     bool holds(int plane) const { return !window_ || window_->held[static_cast<std::size_t>(plane + window_->margin)] != 0; }
-    /// Returns whether `deep` ghost planes are stored.
-    bool reaches(int deep) const { return !window_ || deep <= window_->deep; }
+    /// Returns whether `ghost_planes` planes are stored.
+    bool reaches(int ghost_planes) const { return !window_ || ghost_planes <= window_->ghost_planes; }
     /// For Planes::held, at plane 0; nullptr where all planes are stored.
     const char* held() const { return window_ ? window_->held.data() + window_->margin : nullptr; }
 
-    /// Commits memory for the ghost planes up to `deep` that are not stored yet.
-    void open(int deep, bool ring) {
-        if (!window_ || (deep <= window_->deep && (window_->ring || !ring))) return;
-        window_->deep = std::max(deep, window_->deep), window_->ring = window_->ring || ring;
-        open(planes_held(*detail::own_share.cut, slabs().rank(), window_->count, window_->margin, window_->deep, window_->ring));
+    /// Commits memory for the ghost planes up to `ghost_planes` that are not stored yet.
+    void open(int ghost_planes, bool ring) {
+        if (!window_ || (ghost_planes <= window_->ghost_planes && (window_->ring || !ring))) return;
+        window_->ghost_planes = std::max(ghost_planes, window_->ghost_planes), window_->ring = window_->ring || ring;
+        open(planes_held(*detail::own_share.cut, slabs().rank(), window_->count, window_->margin, window_->ghost_planes, window_->ring));
     }
     void open_all() {
         if (window_) open(std::vector<char>(window_->held.size(), 1));
@@ -97,7 +97,7 @@ public:
     void close() {
         if (!window_) return;
         Window& w = *window_;
-        const auto kept = planes_held(*detail::own_share.cut, slabs().rank(), w.count, w.margin, w.deep, w.ring);
+        const auto kept = planes_held(*detail::own_share.cut, slabs().rank(), w.count, w.margin, w.ghost_planes, w.ring);
         for (std::size_t k = 0, end = 0; k < kept.size(); k = end) {
             for (end = k + 1; end < kept.size() && kept[end] == kept[k];) ++end;
             if (kept[k] == 0) w.memory.close(w.at(k), w.at(end));
@@ -133,7 +133,7 @@ private:
         Window(std::size_t bytes) : memory(bytes) {}
         Reserved memory;
         std::size_t head = 0, plane = 0;
-        int count = 0, margin = 0, deep = -1;
+        int count = 0, margin = 0, ghost_planes = -1;
         bool ring = false;
         std::vector<char> held{};
         std::size_t at(std::size_t plane_from_margin) const { return (head + plane_from_margin * plane) * sizeof(T); }
@@ -191,7 +191,7 @@ private:
             reserve(from.head, from.plane, from.count, from.margin);
             window_->memory.open(0, from.head * sizeof(T));
         }
-        window_->deep = std::max(window_->deep, from.deep), window_->ring = window_->ring || from.ring;
+        window_->ghost_planes = std::max(window_->ghost_planes, from.ghost_planes), window_->ring = window_->ring || from.ring;
         open(from.held);
         std::copy_n(other.data_, from.head, data_);
         other.each_run([&](const T* values, std::size_t count) { std::copy_n(values, count, data_ + (values - other.data_)); });

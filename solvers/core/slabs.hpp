@@ -29,7 +29,7 @@ struct Planes {
 };
 
 /// A message sent to another rank and the one received from it; both sides know the sizes beforehand. No message is sent for 0 bytes.
-struct Parcel {
+struct Message {
     int peer;
     const void* sent;
     std::size_t sent_bytes;
@@ -55,10 +55,12 @@ public:
     bool several() const { return ranks_ > 1; }
     const Traffic& traffic() const { return traffic_; }
 
-    /// Halo exchange: fills the `deep` ghost planes of each array on both sides of this rank's subdomain from their owners, in one message
+    /// Halo exchange: fills `ghost_planes` planes of each array on both sides of this rank's subdomain from their owners, in one message
     /// per rank. `ring`: also around the ends of a periodic axis.
-    virtual void refresh(const Cut&, std::span<const Planes>, int /*deep*/, bool /*ring*/) {}
-    void refresh(const Cut& cut, const Planes& planes, int deep, bool ring) { refresh(cut, std::span(&planes, 1), deep, ring); }
+    virtual void refresh(const Cut&, std::span<const Planes>, int /*ghost_planes*/, bool /*ring*/) {}
+    void refresh(const Cut& cut, const Planes& planes, int ghost_planes, bool ring) {
+        refresh(cut, std::span(&planes, 1), ghost_planes, ring);
+    }
     /// All-gather of planes: receives every plane that this rank does not own.
     virtual void gather(const Cut&, const Planes&) {}
     /// Streams the bytes of all ranks, in rank order, to rank 0: sink(data, count) is called there for each piece. An exception of the sink
@@ -69,15 +71,15 @@ public:
     /// All-gather of entries that are not planes: rank r owns the entries [begins[r], begins[r + 1]), of `bytes` each.
     virtual void gather_parts(void* /*entries*/, std::size_t /*bytes*/, std::span<const std::size_t> /*begins*/) {}
     /// Point-to-point exchange of other data, at most one message per rank.
-    virtual void trade(std::span<const Parcel>) {}
+    virtual void exchange(std::span<const Message>) {}
     /// Returns whether stale (unfilled) ghosts are set to NaN, for a test: no code may read them.
     virtual bool poisons() const { return false; }
     /// Returns whether whole fields are read on all ranks, so that each rank must store them whole.
     bool holds_whole() const { return holds_whole_; }
     void hold_whole(bool yes) { holds_whole_ = yes; }
     /// Returns whether objects built now belong to this rank alone, as in one process: to measure their memory.
-    bool builds_alone() const { return builds_alone_; }
-    void build_alone(bool yes) { builds_alone_ = yes; }
+    bool builds_serial() const { return builds_serial_; }
+    void build_serial(bool yes) { builds_serial_ = yes; }
     /// Maximum of a value over the ranks.
     virtual int largest(int value) { return value; }
     /// Barrier with a timeout: returns false where a rank is still missing after `seconds`. A rank that failed alone never arrives.
@@ -90,7 +92,7 @@ protected:
 
 private:
     int rank_ = 0, ranks_ = 1;
-    bool holds_whole_ = false, builds_alone_ = false;
+    bool holds_whole_ = false, builds_serial_ = false;
 };
 
 /// The communicator of this process: one rank, unless set_slabs was called.
@@ -202,14 +204,14 @@ private:
 inline void set_reach(int planes) { detail::own_share.reach = planes; }
 
 /// Returns whether loops over planes are distributed over several ranks.
-inline bool over_ranks() { return detail::own_share.cut != nullptr; }
+inline bool is_distributed() { return detail::own_share.cut != nullptr; }
 
 /// Returns whether the current loop range includes this plane.
 inline bool is_own_plane(int plane) { return plane >= detail::own_share.begin && plane < detail::own_share.end; }
 
 /// Sum of a value over the ranks; in one process, or for replicated work, the value itself.
 inline std::int64_t sum_of_ranks(std::int64_t own) {
-    if (!over_ranks()) return own;
+    if (!is_distributed()) return own;
     const std::vector<std::int64_t> list = of_ranks(own);
     return std::accumulate(list.begin(), list.end(), std::int64_t{0});
 }

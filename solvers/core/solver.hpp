@@ -1,8 +1,8 @@
 // The interface of every solver for the time loop, output and validation: steps, views of fields, integrals, checkpoints.
 #pragma once
+#include "core/brush.hpp"
 #include "core/checkpoint.hpp"
 #include "core/effects.hpp"
-#include "core/hand.hpp"
 #include "core/passes.hpp"
 #include "core/types.hpp"
 
@@ -33,7 +33,7 @@ struct StepReport {
     real density_error = not_applicable;      // particle solvers: mean compression
     real max_density_error = not_applicable;  // particle solvers: max compression
     int viscous_iterations = 0;               // of the solve for the friction of a liquid with a free surface
-    int viscous_turns = 0;                    // number of repeated coupled solves for friction and pressure
+    int viscous_coupling_iterations = 0;      // number of repeated coupled solves for friction and pressure
 };
 
 enum class Where { cell, face, particle };
@@ -136,12 +136,12 @@ public:
     virtual std::string concern() const { return {}; }
     virtual FieldSet fields() const = 0;
     /// In parallel: a scope in which fields() shows other data than all data on all ranks. The call is collective.
-    class Brought {
+    class DistributedView {
     public:
-        virtual ~Brought() = default;
+        virtual ~DistributedView() = default;
     };
     /// Where particles are replicated on all ranks: each rank shows an equal part, in the order of one process.
-    virtual std::unique_ptr<Brought> show_in_parts() const { return nullptr; }
+    virtual std::unique_ptr<DistributedView> distributed_view() const { return nullptr; }
     /// In parallel: returns whether the fields have distributed storage.
     virtual bool holds_own_planes() const { return false; }
     /// The components of a field at a point, from a solver that evaluates them without a grid; false: interpolate fields().
@@ -151,7 +151,7 @@ public:
     virtual bool checks_itself() const { return false; }
     virtual std::vector<Integral> integrals() const = 0;
     /// Interactive forcing, where the scene names it and the solver supports it (effects.hand).
-    virtual Hand* hand() const { return nullptr; }
+    virtual BrushForcing* brush() const { return nullptr; }
     /// The fields that may be written; none where the shown fields are not the solver's state.
     virtual std::vector<EditableField> editable() { return {}; }
     /// Called after such a field was written. Restores the invariants of a step: a divergence-free velocity that satisfies the boundary

@@ -17,13 +17,13 @@ struct PlaneSize {
 
 /// The properties of one step that its messages depend on.
 struct StepShape {
-    int iterations = 1;          // of the solve for the pressure or the constraints
-    int cells_crossed = 1;       // by the fastest flow, rounded up
-    std::int64_t step = 1;       // its number: some quantities are reduced only every few steps
-    double beside = 0;           // particles that a neighbour reads, where known; 0: the mean number in these planes
-    double particles = 0;        // total number, for particle solvers
-    int viscous_iterations = 1;  // of the viscosity solve, where there is one
-    int viscous_turns = 0;       // repeated coupled solves after the first
+    int iterations = 1;                   // of the solve for the pressure or the constraints
+    int cells_crossed = 1;                // by the fastest flow, rounded up
+    std::int64_t step = 1;                // its number: some quantities are reduced only every few steps
+    double beside = 0;                    // particles that a neighbour reads, where known; 0: the mean number in these planes
+    double particles = 0;                 // total number, for particle solvers
+    int viscous_iterations = 1;           // of the viscosity solve, where there is one
+    int viscous_coupling_iterations = 0;  // repeated coupled solves after the first
 };
 
 /// What a rank sends in a step: halo exchanges with its neighbours, and collective communication.
@@ -45,17 +45,19 @@ public:
     StepTraffic& sent() { return sent_; }
 
     /// Counts Slabs::refresh, `times` times: one message per peer with the planes of all arrays that the peer reads.
-    void refresh(std::span<const PlaneSize> arrays, int deep, std::int64_t times = 1) { refresh(cut_, ring_, arrays, deep, times); }
-    void refresh(std::initializer_list<PlaneSize> arrays, int deep, std::int64_t times = 1) {
-        refresh(std::span(arrays.begin(), arrays.size()), deep, times);
+    void refresh(std::span<const PlaneSize> arrays, int ghost_planes, std::int64_t times = 1) {
+        refresh(cut_, ring_, arrays, ghost_planes, times);
+    }
+    void refresh(std::initializer_list<PlaneSize> arrays, int ghost_planes, std::int64_t times = 1) {
+        refresh(std::span(arrays.begin(), arrays.size()), ghost_planes, times);
     }
     /// For arrays with another partition: the levels of a multigrid.
-    void refresh(const Cut& cut, bool ring, std::span<const PlaneSize> arrays, int deep, std::int64_t times) {
+    void refresh(const Cut& cut, bool ring, std::span<const PlaneSize> arrays, int ghost_planes, std::int64_t times) {
         for (int peer = 0; peer < cut.ranks(); ++peer) {
             if (peer == rank_) continue;
             std::int64_t bytes = 0;
             for (const PlaneSize& array : arrays)
-                for (const PlaneRange& range : halo_from(cut, rank_, peer, array.count, deep, ring))
+                for (const PlaneRange& range : halo_from(cut, rank_, peer, array.count, ghost_planes, ring))
                     bytes += static_cast<std::int64_t>(array.bytes) * (range.end - range.begin);
             if (bytes > 0) add(sent_.beside, bytes, times);
         }
@@ -73,8 +75,8 @@ public:
         sent_.rounds += times;
         sent_.received += static_cast<double>(whole) * static_cast<double>(times);
     }
-    /// Counts Slabs::trade: a message to one rank, where it is not empty.
-    void parcel(std::size_t bytes, std::int64_t times = 1) {
+    /// Counts Slabs::exchange: a message to one rank, where it is not empty.
+    void message(std::size_t bytes, std::int64_t times = 1) {
         if (bytes > 0) add(sent_.beside, static_cast<std::int64_t>(bytes), times);
     }
 

@@ -24,14 +24,14 @@ constexpr unsigned char poison_byte = 0xff;  // of NaN, single or double
 /// The exchange of one kind of array in a refresh.
 struct Plan {
     Cut cut;
-    int count, deep;
+    int count, ghost_planes;
     bool ring;
-    struct Message {
+    struct PlaneMessage {
         int peer;
         PlaneRange planes;
         bool sends;
     };
-    std::vector<Message> messages;
+    std::vector<PlaneMessage> messages;
 };
 
 class MpiSlabs final : public Slabs {
@@ -48,11 +48,11 @@ public:
     }
     ~MpiSlabs() override { MPI_Finalize(); }
 
-    void refresh(const Cut& cut, std::span<const Planes> arrays, int deep, bool ring) override {
+    void refresh(const Cut& cut, std::span<const Planes> arrays, int ghost_planes, bool ring) override {
         requests_.clear();
         for (int peer = 0; peer < ranks(); ++peer)
             for (const bool sends : {false, true}) {
-                const std::size_t bytes = collect(cut, arrays, deep, ring, peer, sends);
+                const std::size_t bytes = collect(cut, arrays, ghost_planes, ring, peer, sends);
                 if (bytes == 0) continue;
                 const Scattered all(lengths_, places_);
                 requests_.emplace_back();
@@ -64,7 +64,7 @@ public:
             }
         wait_for_requests();
         if (!poisons_) return;
-        for (const Planes& planes : arrays) poison(plan_of(cut, planes.count, deep, ring), planes);
+        for (const Planes& planes : arrays) poison(plan_of(cut, planes.count, ghost_planes, ring), planes);
     }
 
     void gather(const Cut& cut, const Planes& planes) override {
@@ -124,19 +124,19 @@ public:
         count_message(bytes * static_cast<std::size_t>(counts_[static_cast<std::size_t>(rank())]));
     }
 
-    void trade(std::span<const Parcel> parcels) override {
+    void exchange(std::span<const Message> messages) override {
         requests_.clear();
-        for (const Parcel& parcel : parcels) {
-            if (parcel.received_bytes > 0) {
-                const PlaneType all(parcel.received_bytes);
+        for (const Message& message : messages) {
+            if (message.received_bytes > 0) {
+                const PlaneType all(message.received_bytes);
                 requests_.emplace_back();
-                MPI_Irecv(parcel.received, 1, all.type, parcel.peer, 0, MPI_COMM_WORLD, &requests_.back());
+                MPI_Irecv(message.received, 1, all.type, message.peer, 0, MPI_COMM_WORLD, &requests_.back());
             }
-            if (parcel.sent_bytes > 0) {
-                const PlaneType all(parcel.sent_bytes);
+            if (message.sent_bytes > 0) {
+                const PlaneType all(message.sent_bytes);
                 requests_.emplace_back();
-                MPI_Isend(parcel.sent, 1, all.type, parcel.peer, 0, MPI_COMM_WORLD, &requests_.back());
-                count_message(parcel.sent_bytes);
+                MPI_Isend(message.sent, 1, all.type, message.peer, 0, MPI_COMM_WORLD, &requests_.back());
+                count_message(message.sent_bytes);
             }
         }
         wait_for_requests();
@@ -194,11 +194,11 @@ private:
     };
 
     /// Appends the planes of all arrays that are sent to, or received from, a rank to lengths_ and places_; returns their bytes.
-    std::size_t collect(const Cut& cut, std::span<const Planes> arrays, int deep, bool ring, int peer, bool sends) {
+    std::size_t collect(const Cut& cut, std::span<const Planes> arrays, int ghost_planes, bool ring, int peer, bool sends) {
         lengths_.clear(), places_.clear();
         std::size_t bytes = 0;
         for (const Planes& planes : arrays)
-            for (const auto& message : plan_of(cut, planes.count, deep, ring).messages) {
+            for (const auto& message : plan_of(cut, planes.count, ghost_planes, ring).messages) {
                 if (message.peer != peer || message.sends != sends) continue;
                 for (int plane = message.planes.begin; plane < message.planes.end; ++plane) {  // a single plane is smaller than 2 GB
                     lengths_.push_back(static_cast<int>(planes.bytes));
@@ -234,14 +234,16 @@ private:
         traffic_.bytes += static_cast<std::int64_t>(bytes);
     }
 
-    const Plan& plan_of(const Cut& cut, int count, int deep, bool ring) {
+    const Plan& plan_of(const Cut& cut, int count, int ghost_planes, bool ring) {
         for (const Plan& plan : plans_)
-            if (plan.count == count && plan.deep == deep && plan.ring == ring && plan.cut == cut) return plan;
-        Plan plan{cut, count, deep, ring, {}};
+            if (plan.count == count && plan.ghost_planes == ghost_planes && plan.ring == ring && plan.cut == cut) return plan;
+        Plan plan{cut, count, ghost_planes, ring, {}};
         for (int peer = 0; peer < ranks(); ++peer) {
             if (peer == rank()) continue;
-            for (const PlaneRange& range : halo_from(cut, peer, rank(), count, deep, ring)) plan.messages.push_back({peer, range, false});
-            for (const PlaneRange& range : halo_from(cut, rank(), peer, count, deep, ring)) plan.messages.push_back({peer, range, true});
+            for (const PlaneRange& range : halo_from(cut, peer, rank(), count, ghost_planes, ring))
+                plan.messages.push_back({peer, range, false});
+            for (const PlaneRange& range : halo_from(cut, rank(), peer, count, ghost_planes, ring))
+                plan.messages.push_back({peer, range, true});
         }
         plans_.push_back(std::move(plan));
         return plans_.back();

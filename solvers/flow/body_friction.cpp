@@ -24,14 +24,14 @@ BodyFriction<D>::BodyFriction(const MacState<D>& s) : direction_(s.u) {
         nodes_.push_back(free_faces(s.u, s.sides, a));
         homogeneous_[static_cast<std::size_t>(a)] = s.boundary[static_cast<std::size_t>(a)].homogeneous();
     }
-    direction_bodies_.resize(s.grip->riders.size());
+    direction_bodies_.resize(s.no_slip_walls->bodies.size());
     for (Vector* v : {&residual_, &solution_, &image_, &diagonal_}) size(*v, s);
 }
 
 template <int D>
 void BodyFriction<D>::size(Vector& v, const MacState<D>& s) const {
     for (int a = 0; a < D; ++a) v.fluid[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent());
-    v.bodies.resize(s.grip->riders.size());
+    v.bodies.resize(s.no_slip_walls->bodies.size());
 }
 
 /// Inner product: the fluid's part, then the bodies', in fixed order.
@@ -48,9 +48,9 @@ real BodyFriction<D>::dot(const Vector& x, const Vector& y) const {
 /// ∇²q of the grid neighbours, without links across walls: their terms are added where the wall velocity is known.
 template <int D>
 void BodyFriction<D>::laplacian_of(const Padded<D>& q, const MacState<D>& s, int a, Grid<real, D>& out) const {
-    const auto& mask = s.grip->takes_part[static_cast<std::size_t>(a)];
+    const auto& mask = s.no_slip_walls->takes_part[static_cast<std::size_t>(a)];
     laplacian(q, s.u.h, nodes_[static_cast<std::size_t>(a)], mask, nullptr, out);
-    for (const WallLink<D>& link : s.grip->links)
+    for (const WallLink<D>& link : s.no_slip_walls->links)
         if (link.axis == a) out(link.node) -= (q(link.beyond) - q(link.node)) / (s.u.h[link.across] * s.u.h[link.across]);
 }
 
@@ -59,9 +59,9 @@ template <int D>
 static void add_walls_of_before(const MacState<D>& s, std::array<Grid<real, D>, D>& rate) {
     const real mass = s.rho * s.u.cell_volume();
     for (std::size_t a = 0; a < D; ++a) for_each_cell(rate[a].extent(), [&](const Index<D>& I) { rate[a](I) *= s.nu * mass; });
-    for (const WallLink<D>& link : s.grip->links) {
+    for (const WallLink<D>& link : s.no_slip_walls->links) {
         const auto a = static_cast<std::size_t>(link.axis);
-        const real wall = WallGrip<D>::along(link.moves, s.grip->riders[link.body].velocity);
+        const real wall = NoSlipWalls<D>::along(link.moves, s.no_slip_walls->bodies[link.body].velocity);
         rate[a](link.node) += conductance(s, link) * (wall - s.before[link.axis](link.node));
     }
 }
@@ -78,27 +78,27 @@ void BodyFriction<D>::set_right_side(const MacState<D>& s, real dt) {
     }
     add_walls_of_before<D>(s, residual_.fluid);
     for (std::size_t a = 0; a < D; ++a) {
-        const auto& mask = s.grip->takes_part[a];
+        const auto& mask = s.no_slip_walls->takes_part[a];
         auto& r = residual_.fluid[a];
         for_each_in(nodes_[a].lo, nodes_[a].hi, [&](const Index<D>& I) {
             const real changed = mass * (s.u.face[a](I) - s.before.face[a](I));
             r(I) = mask(I) * (changed + dt * r(I));
         });
     }
-    for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
-        const Rider<D>& rider = s.grip->riders[b];
+    for (std::size_t b = 0; b < s.no_slip_walls->bodies.size(); ++b) {
+        const NoSlipBody<D>& body = s.no_slip_walls->bodies[b];
         auto& r = residual_.bodies[b];
-        r = rider.sticks ? rider.drive : rigid::Twist<D>{};
-        for (std::size_t k = D; k < n && rider.sticks; ++k) r[k] -= dt * rider.turning * rider.velocity[k];
+        r = body.coupled ? body.drive : rigid::Twist<D>{};
+        for (std::size_t k = D; k < n && body.coupled; ++k) r[k] -= dt * body.turning * body.velocity[k];
     }
-    for (const WallLink<D>& link : s.grip->links) {
-        const real wall = WallGrip<D>::along(link.moves, s.grip->riders[link.body].velocity);
+    for (const WallLink<D>& link : s.no_slip_walls->links) {
+        const real wall = NoSlipWalls<D>::along(link.moves, s.no_slip_walls->bodies[link.body].velocity);
         const real pull = dt * conductance(s, link) * (s.before[link.axis](link.node) - wall);
         for (std::size_t k = 0; k < n; ++k) residual_.bodies[link.body][k] += pull * link.moves[k];
     }
-    for (std::size_t b = 0; b < s.grip->riders.size(); ++b)
+    for (std::size_t b = 0; b < s.no_slip_walls->bodies.size(); ++b)
         for (std::size_t k = 0; k < n; ++k)
-            if (s.grip->riders[b].held[k]) residual_.bodies[b][k] = 0;
+            if (s.no_slip_walls->bodies[b].held[k]) residual_.bodies[b][k] = 0;
 }
 
 /// image = A direction
@@ -112,20 +112,20 @@ void BodyFriction<D>::multiply(const MacState<D>& s, real dt) {
         rows_[at].each([&](const Index<D>& I, real extra, real) { image(I) += extra * direction_[c](I); });
         for_each_in(nodes_[at].lo, nodes_[at].hi, [&](const Index<D>& I) { image(I) = mass * (direction_[c](I) - dt * s.nu * image(I)); });
     }
-    for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
-        const Rider<D>& rider = s.grip->riders[b];
-        image_.bodies[b] = rider.with_mass(direction_bodies_[b]);
-        for (std::size_t k = D; k < n; ++k) image_.bodies[b][k] += dt * rider.turning * direction_bodies_[b][k];
+    for (std::size_t b = 0; b < s.no_slip_walls->bodies.size(); ++b) {
+        const NoSlipBody<D>& body = s.no_slip_walls->bodies[b];
+        image_.bodies[b] = body.with_mass(direction_bodies_[b]);
+        for (std::size_t k = D; k < n; ++k) image_.bodies[b][k] += dt * body.turning * direction_bodies_[b][k];
     }
-    for (const WallLink<D>& link : s.grip->links) {
-        const real apart = direction_[link.axis](link.node) - WallGrip<D>::along(link.moves, direction_bodies_[link.body]);
+    for (const WallLink<D>& link : s.no_slip_walls->links) {
+        const real apart = direction_[link.axis](link.node) - NoSlipWalls<D>::along(link.moves, direction_bodies_[link.body]);
         const real pull = dt * conductance(s, link) * apart;
         image_.fluid[static_cast<std::size_t>(link.axis)](link.node) += pull;
         for (std::size_t k = 0; k < n; ++k) image_.bodies[link.body][k] -= pull * link.moves[k];
     }
-    for (std::size_t b = 0; b < s.grip->riders.size(); ++b)
+    for (std::size_t b = 0; b < s.no_slip_walls->bodies.size(); ++b)
         for (std::size_t k = 0; k < n; ++k)
-            if (s.grip->riders[b].held[k] || !s.grip->riders[b].sticks) image_.bodies[b][k] = direction_bodies_[b][k];
+            if (s.no_slip_walls->bodies[b].held[k] || !s.no_slip_walls->bodies[b].coupled) image_.bodies[b][k] = direction_bodies_[b][k];
 }
 
 template <int D>
@@ -136,9 +136,10 @@ void BodyFriction<D>::set_diagonal(const MacState<D>& s, real dt) {
     for (auto& diagonal : diagonal_.fluid) diagonal.fill(mass * (1 + dt * s.nu * across));
     for (std::size_t a = 0; a < D; ++a)
         rows_[a].each([&](const Index<D>& I, real extra, real) { diagonal_.fluid[a](I) -= mass * dt * s.nu * extra; });
-    for (std::size_t b = 0; b < s.grip->riders.size(); ++b)
-        for (std::size_t k = 0; k < n; ++k) diagonal_.bodies[b][k] = s.grip->riders[b].sticks ? s.grip->riders[b].mass[k][k] : 1;
-    for (const WallLink<D>& link : s.grip->links) {
+    for (std::size_t b = 0; b < s.no_slip_walls->bodies.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k)
+            diagonal_.bodies[b][k] = s.no_slip_walls->bodies[b].coupled ? s.no_slip_walls->bodies[b].mass[k][k] : 1;
+    for (const WallLink<D>& link : s.no_slip_walls->links) {
         const real c = dt * conductance(s, link);
         diagonal_.fluid[static_cast<std::size_t>(link.axis)](link.node) += c * (1 - 1 / link.nearer);
         for (std::size_t k = 0; k < n; ++k) diagonal_.bodies[link.body][k] += c * link.moves[k] * link.moves[k];
@@ -158,7 +159,7 @@ real BodyFriction<D>::precondition() {
 
 /// direction = z + β direction; the first direction is z.
 template <int D>
-void BodyFriction<D>::turn(real beta) {
+void BodyFriction<D>::update_direction(real beta) {
     for (std::size_t c = 0; c < D; ++c) {
         auto& d = direction_.face[c];
         for_each_in(nodes_[c].lo, nodes_[c].hi, [&](const Index<D>& I) { d(I) = image_.fluid[c](I) + (beta == 0 ? 0 : beta * d(I)); });
@@ -199,7 +200,7 @@ void BodyFriction<D>::solve(MacState<D>& s, real dt) {
     for (auto& q : solution_.bodies) q = {};
     real rz = precondition();
     const real goal = tolerance * tolerance * rz;
-    if (rz > 0) turn(0);
+    if (rz > 0) update_direction(0);
     for (iterations_ = 0; rz > goal; ++iterations_) {
         if (iterations_ == max_iterations || !std::isfinite(rz))
             throw NumericalFailure("velocity", "the implicit solve for velocity and bodies did not converge");
@@ -207,7 +208,7 @@ void BodyFriction<D>::solve(MacState<D>& s, real dt) {
         walk(rz);
         const real last = rz;
         rz = precondition();
-        turn(rz / last);
+        update_direction(rz / last);
     }
     finish(s, dt);
 }
@@ -215,22 +216,22 @@ void BodyFriction<D>::solve(MacState<D>& s, real dt) {
 /// Updates u and the friction impulses of the bodies: equal and opposite to the fluid's.
 template <int D>
 void BodyFriction<D>::finish(MacState<D>& s, real dt) {
-    for (std::size_t b = 0; b < s.grip->riders.size(); ++b) {
-        Rider<D>& rider = s.grip->riders[b];
-        rider.impulse = {};
-        for (std::size_t k = D; k < n && rider.sticks; ++k)
-            rider.impulse[k] = -dt * rider.turning * (rider.velocity[k] + solution_.bodies[b][k]);
+    for (std::size_t b = 0; b < s.no_slip_walls->bodies.size(); ++b) {
+        NoSlipBody<D>& body = s.no_slip_walls->bodies[b];
+        body.impulse = {};
+        for (std::size_t k = D; k < n && body.coupled; ++k)
+            body.impulse[k] = -dt * body.turning * (body.velocity[k] + solution_.bodies[b][k]);
     }
-    for (const WallLink<D>& link : s.grip->links) {
-        Rider<D>& rider = s.grip->riders[link.body];
-        const real before = s.before[link.axis](link.node) - WallGrip<D>::along(link.moves, rider.velocity);
-        const real change =
-            solution_.fluid[static_cast<std::size_t>(link.axis)](link.node) - WallGrip<D>::along(link.moves, solution_.bodies[link.body]);
+    for (const WallLink<D>& link : s.no_slip_walls->links) {
+        NoSlipBody<D>& body = s.no_slip_walls->bodies[link.body];
+        const real before = s.before[link.axis](link.node) - NoSlipWalls<D>::along(link.moves, body.velocity);
+        const real change = solution_.fluid[static_cast<std::size_t>(link.axis)](link.node) -
+                            NoSlipWalls<D>::along(link.moves, solution_.bodies[link.body]);
         const real pull = dt * conductance(s, link) * (before + change);
-        for (std::size_t k = 0; k < n; ++k) rider.impulse[k] += pull * link.moves[k];
+        for (std::size_t k = 0; k < n; ++k) body.impulse[k] += pull * link.moves[k];
     }
     for (std::size_t a = 0; a < D; ++a) {
-        const auto& mask = s.grip->takes_part[a];
+        const auto& mask = s.no_slip_walls->takes_part[a];
         for_each_in(nodes_[a].lo, nodes_[a].hi, [&](const Index<D>& I) {
             if (mask(I) != 0) s.u.face[a](I) = s.before.face[a](I) + solution_.fluid[a](I);
         });
@@ -239,10 +240,10 @@ void BodyFriction<D>::finish(MacState<D>& s, real dt) {
 
 template <int D>
 void BodyFriction<D>::carry(MacState<D>& s) const {
-    for (const InsideFace<D>& f : s.grip->inside) {
-        rigid::Twist<D> velocity = s.grip->riders[f.body].velocity;
+    for (const InsideFace<D>& f : s.no_slip_walls->inside) {
+        rigid::Twist<D> velocity = s.no_slip_walls->bodies[f.body].velocity;
         for (std::size_t k = 0; k < n; ++k) velocity[k] += solution_.bodies[f.body][k];
-        s.u[f.axis](f.face) = WallGrip<D>::along(f.moves, velocity);
+        s.u[f.axis](f.face) = NoSlipWalls<D>::along(f.moves, velocity);
     }
 }
 

@@ -1,5 +1,5 @@
 // Viscosity of a fluid and its no-slip bodies as one linear system. With δ the change of the fluid's velocity, δV that of a body's, and c =
-// dt ρν ΔV/(θ h²) at each wall link (staggered/wall_grip.hpp):
+// dt ρν ΔV/(θ h²) at each wall link (staggered/no_slip_walls.hpp):
 //
 //     ρ ΔV (I − dt ν∇²) δ + Σ c (δ − J δV) = ρ ΔV r,      M δV + Σ Jᵀ c (J δV − δ) = R,      J: the wall's velocity by the body's
 //
@@ -8,8 +8,8 @@
 // for a body of any shape.
 #pragma once
 #include "flow/wall_rates.hpp"
+#include "staggered/no_slip_walls.hpp"
 #include "staggered/state.hpp"
-#include "staggered/wall_grip.hpp"
 
 namespace weir::flow {
 
@@ -36,7 +36,7 @@ private:
     void set_diagonal(const MacState<D>& s, real dt);
     void multiply(const MacState<D>& s, real dt);
     real precondition();
-    void turn(real beta);
+    void update_direction(real beta);
     void walk(real rz);
     void finish(MacState<D>& s, real dt);
     real dot(const Vector& x, const Vector& y) const;

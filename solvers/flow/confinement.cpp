@@ -18,20 +18,20 @@ struct Confinement final : MacEffect<D> {
         for (int a = 0; a < D; ++a) plan.scratch(force[static_cast<std::size_t>(a)]);
     }
     /// The force of the velocity before the step, applied in halves at the departure and arrival points.
-    void depart(MacState<D>& s, real dt) override {
+    void apply_before_advection(MacState<D>& s, real dt) override {
         find_force(s);
         push(s, dt);
-        departed_ = true;
+        force_known_ = true;
     }
     void apply(MacState<D>& s, real dt) override {
-        if (!departed_) find_force(s);
+        if (!force_known_) find_force(s);
         push(s, dt);
-        departed_ = false;
+        force_known_ = false;
     }
 
 private:
     struct alignas(64) Row : std::array<real, row_block> {};
-    bool departed_ = false;  // the scratch fields contain the force of this step
+    bool force_known_ = false;  // the scratch fields contain the force of this step
 
     std::array<Grid<real, D>*, D> force_fields(MacState<D>& s) const {
         std::array<Grid<real, D>*, D> f;

@@ -22,7 +22,7 @@ std::vector<EditableField> FlowSolver<D>::editable() {
 /// The next step starts with the previous pressure: the pressure that projects the new velocity is not that of the flow.
 template <int D>
 void FlowSolver<D>::edited(const EditableField& field) {
-    if (field.name != "velocity") return hold();
+    if (field.name != "velocity") return enforce_sources();
     set_side_faces(state_.u, state_.sides, state_.nu);
     sync_periodic(state_.u, state_.sides);
     solids_.set_faces(state_);

@@ -71,7 +71,7 @@ std::string Emitters<D>::idle(const Emitter& emitter, const geometry::Shape<D>& 
                    (set.axis < 0 ? "" : std::string(" along ") + "xyz"[set.axis]);
     const auto [cells, any] = covered(shape, state.cells, [&](const Index<D>& I) { return state.u.cell_centre(I); });
     const bool some = std::any_of(cells.begin(), cells.end(), [&](std::size_t i) { return state.cells[i] != poisson::Cell::solid; });
-    if (any && (over_ranks() ? slabs().largest(some) : some) == 0) return "the emitter lies inside solids: nothing can leave it";
+    if (any && (is_distributed() ? slabs().largest(some) : some) == 0) return "the emitter lies inside solids: nothing can leave it";
     return {};
 }
 
@@ -100,7 +100,7 @@ void Emitters<D>::apply(MacState<D>& s, real) {
                 for (const std::size_t i : set.entries) s.u[set.axis][i] = set.value;
             }
     }
-    for (auto& field : s.fields) field.hold();
+    for (auto& field : s.fields) field.enforce_sources();
 }
 
 /// No step crosses the time at which an emitter opens: its heating and forces are unknown before.

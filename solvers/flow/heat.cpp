@@ -58,7 +58,7 @@ void Heat<D>::conduct(MacState<D>& s, real dt) {
 }
 
 template <int D>
-void Heat<D>::lift(MacState<D>& s, real dt) const {
+void Heat<D>::apply_buoyancy(MacState<D>& s, real dt) const {
     if (!lightness_) return;
     constexpr int up = 1;
     const matter::Lightness& light = *lightness_;
@@ -76,10 +76,10 @@ void Heat<D>::lift(MacState<D>& s, real dt) const {
 
 /// Returns at once where everything is liquid now and was in the last step.
 template <int D>
-bool Heat<D>::slow(MacState<D>& s, real dt) {
+bool Heat<D>::apply_ice_drag(MacState<D>& s, real dt) {
     const bool was_ice = std::exchange(slows_, any_ice_);
     if (!any_ice_ && !was_ice) return false;
-    ice_.hold_back(s, liquid_, dt * drag_ / s.rho);
+    ice_.apply_drag(s, liquid_, dt * drag_ / s.rho);
     return true;
 }
 

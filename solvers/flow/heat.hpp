@@ -32,14 +32,14 @@ public:
     /// Computes enthalpies from the initial temperatures; rejects values below 0 K and above boiling.
     void start(MacState<D>& s, const scene::Scene& scene);
     /// Adds interactive heating.
-    void follow(std::shared_ptr<Hand> hand, MacState<D>& s) { supply_.follow(std::move(hand), melting_, s["enthalpy"]); }
+    void follow(std::shared_ptr<BrushForcing> forcing, MacState<D>& s) { supply_.follow(std::move(forcing), melting_, s["enthalpy"]); }
     /// H += (dt/ρ) (∇·(k ∇T) + q), and T of it (conduction.hpp).
     void conduct(MacState<D>& s, real dt);
     /// u += dt g ∫β dT along y, β the substance's thermal expansion, from its melting point (Boussinesq); no force in ice.
-    void lift(MacState<D>& s, real dt) const;
-    bool lifts() const { return lightness_.has_value(); }
+    void apply_buoyancy(MacState<D>& s, real dt) const;
+    bool has_buoyancy() const { return lightness_.has_value(); }
     /// Multiplies u* by β and sets the state's mobility to β. Returns whether β may have changed.
-    bool slow(MacState<D>& s, real dt);
+    bool apply_ice_drag(MacState<D>& s, real dt);
     /// Stability limit of explicit conduction [s]; max_dt adds the time to the next switching of a heater.
     real stable_dt(const MacState<D>& s) const;
     real max_dt(const MacState<D>& s) const;

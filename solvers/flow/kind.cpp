@@ -3,7 +3,7 @@
 #include "core/traffic.hpp"
 #include "flow/effects.hpp"
 #include "flow/solver.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "matter/heat.hpp"
 #include "scene/one_process.hpp"
 #include "staggered/inflow.hpp"
@@ -37,10 +37,10 @@ Key sides_key() {
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
-void over_ranks(const scene::Scene& scene) {
+void check_parallel(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (Heat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting of a substance is");
-    scene::refuse_hand(scene);
+    scene::refuse_brush(scene);
 }
 
 }  // namespace
@@ -55,14 +55,14 @@ scene::SolverKind kind() {
                    sides_key(),         initial_keys()};
     for (Key& key : Heat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = schemas_of(effect_kinds());
-    schema.effects.push_back(geometry::hand_schema());
+    schema.effects.push_back(geometry::brush_schema());
     scene::SolverKind mac{schema,
                           make_without_surface<FlowSolver>,
                           {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
-                          over_ranks};
+                          check_parallel};
     mac.holds_own_part = staggered::holds_own_planes;
     mac.sends = traffic_of_step;
-    mac.by_all = staggered::pressure_by_all;
+    mac.replicated_work = staggered::replicated_pressure;
     return mac;
 }
 

@@ -18,7 +18,7 @@ struct Relaxation : MacEffect<D> {
         : field(name), rate(rate_), ambient(ambient_), scheme(scheme_) {}
     Stage stage() const override { return scheme == Scheme::conservative ? Stage::force : Stage::carried; }
     void needs(FieldPlan& plan) const override { plan.advected(field); }
-    void depart(MacState<D>& s, real dt) override { fade(s[field], dt); }
+    void apply_before_advection(MacState<D>& s, real dt) override { fade(s[field], dt); }
     void apply(MacState<D>& s, real dt) override {
         if (scheme != Scheme::conservative) return fade(s[field], scheme == Scheme::maccormack ? 0.5 * dt : dt);
         auto& q = s.field(field);

@@ -1,9 +1,9 @@
 #include "flow/solver.hpp"
 
-#include "core/cut_by_work.hpp"
 #include "core/error.hpp"
+#include "core/load_balance.hpp"
 #include "flow/emitters.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "scene/names.hpp"
 #include "staggered/closed_volume.hpp"
 #include "staggered/diagnostics.hpp"
@@ -27,20 +27,20 @@ StepReport FlowSolver<D>::step(real dt) {
         const real part = stage.fraction() * dt;
         remember(dt);  // uⁿ, qⁿ with their ghosts
         if (walls_ && !walls_->found()) meet_walls(t, t);
-        depart(dt);                   // u += dt f(uⁿ, qⁿ): all of it in flux form, half of it for MacCormack
-        advect_fields(dt);            // Dq/Dt = 0    only fields requested by an effect
-        advect_velocity(dt);          // Du/Dt = 0
-        blend(stage);                 // γ and ζ of a Runge-Kutta stage
-        apply(Stage::carried, part);  // (I − dt κ∇²) q = ...
-        conduct(part);                // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
-        arrive(dt);                   // u += the rest of dt f(u, q)
-        if (state_.grip) rub(t + part, part);
+        explicit_terms_before_advection(dt);  // u += dt f(uⁿ, qⁿ): all of it in flux form, half of it for MacCormack
+        advect_fields(dt);                    // Dq/Dt = 0    only fields requested by an effect
+        advect_velocity(dt);                  // Du/Dt = 0
+        blend(stage);                         // γ and ζ of a Runge-Kutta stage
+        apply(Stage::carried, part);          // (I − dt κ∇²) q = ...
+        conduct(part);                        // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
+        explicit_terms_after_advection(dt);   // u += the rest of dt f(u, q)
+        if (state_.no_slip_walls) move_no_slip_bodies(t + part, part);
         if (walls_ && solids_.moving()) meet_walls(t + part, t);
         apply(Stage::implicit, part);  // (I − dt ν∇²) u = ...
-        if (walls_) walls_->hold(state_, part / state_.rho);
+        if (walls_) walls_->enforce_no_slip(state_, part / state_.rho);
         move_solids(t += part, part);  // u·n = u_solid·n
         project(part);                 // ∇·u = 0
-        hold();                        // values prescribed by emitters and solids
+        enforce_sources();             // values prescribed by emitters and solids
     }
     apply(Stage::finish, dt);
     if (solids_.moving()) clear_solids();
@@ -87,7 +87,7 @@ real ambient_temperature(const scene::Scene& scene) {
 /// Evaluates f() on the rank that owns one end of the partitioned axis and broadcasts the result.
 template <class F>
 auto of_rank_at(int end, F&& f) -> decltype(f()) {
-    if (!over_ranks()) return f();
+    if (!is_distributed()) return f();
     const int owner = end == 0 ? 0 : slabs().ranks() - 1;
     decltype(f()) own{};
     if (slabs().rank() == owner) {
@@ -134,7 +134,7 @@ int moments_of(std::size_t cells) { return static_cast<int>(std::clamp<std::size
 /// Rejects moving solids that change the volume of enclosed fluid. Tested from t = 0 to the end; afterwards the solids are at t = 0 again.
 template <int D>
 void refuse_squeezing(const scene::Scene& scene, MacState<D>& s, SolidPlacement<D>& solids) {
-    if (over_ranks()) return;  // the step tests it there
+    if (is_distributed()) return;  // the step tests it there
     const int moments = moments_of(s.cells.size());
     const real end = scene.number("time.end");
     for (int k = 0; k <= moments; ++k) {
@@ -176,8 +176,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
       side_rate_(fastest_side(state_)),
       wants_vorticity_(lists(scene, "vorticity")),
       wants_divergence_(lists(scene, "divergence")),
-      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
-    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::implicit));
+      brush_forcing_(geometry::make_brush(scene, kinds_of_brush(scene))) {
+    if (brush_forcing_) effects_.add("hand", brush_effect<D>(brush_forcing_, Stage::implicit));
     if (max_over(state_.extent(), [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::fluid ? 1.0 : 0.0; }) == 0)
         scene.refuse("solids", "solids cover all cells of the domain");
     if (Emitters<D>::any(scene)) effects_.add("emitters", std::make_unique<Emitters<D>>(scene, state_));
@@ -193,7 +193,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     if (heat_) {
         if (solids_.moving()) scene.refuse("solids", "moving solids cannot be combined with a melting substance");
         heat_->start(state_, scene);
-        if (hand_) heat_->follow(hand_, state_);
+        if (brush_forcing_) heat_->follow(brush_forcing_, state_);
     }
     if (bodies_) {
         if (options_.scheme == Scheme::conservative)
@@ -202,8 +202,8 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
         bodies_->start(state_, solids_);
         const auto& all = bodies_->bodies().all();
         if (scene.effect("viscosity") && std::any_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; }))
-            bodies_->stick(state_, false);
-        if (hand_) bodies_->follow(hand_, scene);
+            bodies_->couple_friction(state_, false);
+        if (brush_forcing_) bodies_->follow(brush_forcing_, scene);
     }
     for (auto& field : state_.fields) {
         if (field.derived) continue;
@@ -217,7 +217,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     remembered_.insert(remembered_.end(), remembered_fields_.begin(), remembered_fields_.end());
     solids_.set_faces(state_);
     refuse_closed_box(scene, state_);
-    if (move_as_told(solids_.solids())) refuse_squeezing(scene, state_, solids_);
+    if (move_as_prescribed(solids_.solids())) refuse_squeezing(scene, state_, solids_);
     clear_solids();
     smoke_removed_ = 0;  // smoke placed inside a solid by the scene does not count
     if (solids_.moving() && state_.find("smoke")) {
@@ -227,7 +227,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     apply(Stage::source, 0);  // values emitted from the start exist at the start: the first step has its forces
     passes_.reset();
     held_.made();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 template <int D>
@@ -247,7 +247,7 @@ void FlowSolver<D>::remember(real dt) {
     set_reach(planes_reached(dt * fastest, state_.extent()[D - 1]));
     fill_field_planes();
     fill_end_planes(remembered_, planes_to_extend());
-    solids_.know(state_, detail::own_share.reach + 3);
+    solids_.fill_ghosts(state_, detail::own_share.reach + 3);
     solids_.extend_velocity(state_);
     extend_fields();
 }
@@ -278,7 +278,7 @@ void FlowSolver<D>::extend_fields() {
 /// Forces on a face depend on the cells on both sides.
 template <int D>
 void FlowSolver<D>::refresh_fields() {
-    if (!over_ranks() || state_.fields.empty()) return;
+    if (!is_distributed() || state_.fields.empty()) return;
     shared_.clear();
     for (auto& field : state_.fields) shared_.push_back(planes_of(field.values));
     slabs().refresh(held_.cut(), shared_, 1, state_.sides.periodic(D - 1));
@@ -286,32 +286,33 @@ void FlowSolver<D>::refresh_fields() {
 
 /// Bodies move before friction, which uses their new position.
 template <int D>
-void FlowSolver<D>::rub(real t, real dt) {
+void FlowSolver<D>::move_no_slip_bodies(real t, real dt) {
     bodies_->leave(state_, dt);
     place_solids(t, dt);
     const auto timed = passes_.time("solids");
-    bodies_->grip(state_, solids_, dt);
+    bodies_->set_no_slip_walls(state_, solids_, dt);
 }
 
 /// In flux form all explicit rates use the fields before the step. The trapezoidal rule along trajectories applies half of each term at the
 /// departure point: advected fields contain it.
 template <int D>
-void FlowSolver<D>::depart(real dt) {
+void FlowSolver<D>::explicit_terms_before_advection(real dt) {
     refresh_fields();
     if (options_.scheme == Scheme::conservative) {
-        lift(dt);
+        apply_buoyancy(dt);
         return apply(Stage::force, dt);
     }
     if (options_.scheme != Scheme::maccormack) return;
-    for (const Stage stage : {Stage::implicit, Stage::force, Stage::carried}) effects_.depart(stage, state_, 0.5 * dt, passes_);
-    lift(0.5 * dt);
-    if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force) || (heat_ && heat_->lifts())) {
+    for (const Stage stage : {Stage::implicit, Stage::force, Stage::carried})
+        effects_.apply_before_advection(stage, state_, 0.5 * dt, passes_);
+    apply_buoyancy(0.5 * dt);
+    if (!effects_.empty(Stage::implicit) || !effects_.empty(Stage::force) || (heat_ && heat_->has_buoyancy())) {
         sync_periodic(state_.u, state_.sides);
         solids_.set_faces(state_);  // forces do not change the velocity of solids
     }
     if (effects_.empty(Stage::carried)) return;
     const auto timed = passes_.time("ghosts");
-    for (auto& field : state_.fields) field.hold();
+    for (auto& field : state_.fields) field.enforce_sources();
     fill_field_planes();
     fill_end_planes(remembered_fields_, planes_to_extend());
     extend_fields();
@@ -319,11 +320,11 @@ void FlowSolver<D>::depart(real dt) {
 
 /// Advected fields are final here: forces use the temperature at the end of the step.
 template <int D>
-void FlowSolver<D>::arrive(real dt) {
+void FlowSolver<D>::explicit_terms_after_advection(real dt) {
     if (options_.scheme == Scheme::conservative) return;
     const real part = options_.scheme == Scheme::maccormack ? 0.5 * dt : dt;
     refresh_fields();
-    lift(part);
+    apply_buoyancy(part);
     apply(Stage::force, part);
     sync_periodic(state_.u, state_.sides);
 }
@@ -397,22 +398,22 @@ void FlowSolver<D>::meet_walls(real now, real last) {
     const auto timed = passes_.time("solids");
     solids_.solids().set_time(now);
     walls_->find(state_, solids_, now, last);
-    const bool grips = state_.grip && !state_.grip->takes_part[0].empty();  // once bodies have been found
-    for (int a = 0; grips && a < D; ++a)
-        for (const HeldFace<D>& f : walls_->held(a)) state_.grip->takes_part[static_cast<std::size_t>(a)](f.face) = 0;
+    const bool found = state_.no_slip_walls && !state_.no_slip_walls->takes_part[0].empty();  // once bodies have been found
+    for (int a = 0; found && a < D; ++a)
+        for (const HeldFace<D>& f : walls_->held(a)) state_.no_slip_walls->takes_part[static_cast<std::size_t>(a)](f.face) = 0;
 }
 
 /// Friction force on no-slip solids. In parallel, the stress at a subdomain boundary needs the values of both sides.
 template <int D>
 Vec<D> FlowSolver<D>::friction() {
-    if (!walls_ || !walls_->stick() || state_.nu == 0) return {};
+    if (!walls_ || !walls_->no_slip() || state_.nu == 0) return {};
     for (int a = 0; a + 1 < D; ++a) refresh(state_.u[a], state_.sides.periodic(D - 1));
     return walls_->friction(state_).force;
 }
 
 template <int D>
 void FlowSolver<D>::move_solids(real t, real dt) {
-    if (!state_.grip) place_solids(t, dt);
+    if (!state_.no_slip_walls) place_solids(t, dt);
     if (walls_ && solids_.moving()) meet_walls(t, t);  // the faces that are open now
     solids_.set_faces(state_);
 }
@@ -421,9 +422,9 @@ template <int D>
 void FlowSolver<D>::place_solids(real t, real dt) {
     if (!solids_.any()) return;
     const auto timed = passes_.time("solids");
-    if (bodies_) bodies_->fly(solids_, dt);
+    if (bodies_) bodies_->advance_free(solids_, dt);
     if (!solids_.moving()) return;
-    const AllPlanes all(!held_.alone());
+    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     projection_.set_matrix(state_);
 }
@@ -436,21 +437,21 @@ void FlowSolver<D>::conduct(real dt) {
 }
 
 template <int D>
-void FlowSolver<D>::lift(real dt) {
-    if (heat_) heat_->lift(state_, dt);
+void FlowSolver<D>::apply_buoyancy(real dt) {
+    if (heat_) heat_->apply_buoyancy(state_, dt);
 }
 
 /// Drag of ice reduces the response to pressure: sets the face coefficients of the matrix.
 template <int D>
-void FlowSolver<D>::slow(real dt) {
+void FlowSolver<D>::apply_ice_drag(real dt) {
     if (!heat_) return;
     const auto timed = passes_.time("ice");
-    if (heat_->slow(state_, dt)) projection_.set_matrix(state_);
+    if (heat_->apply_ice_drag(state_, dt)) projection_.set_matrix(state_);
 }
 
 template <int D>
 void FlowSolver<D>::project(real dt) {
-    slow(dt);
+    apply_ice_drag(dt);
     const auto timed = passes_.time("project");
     report_ = &explained_by_room(state_, solids_,
                                  [&]() -> const poisson::Report& { return projection_.project(state_, dt, bodies_.get(), &solids_); });
@@ -461,8 +462,8 @@ void FlowSolver<D>::project(real dt) {
 /// Emitted values are prescribed after each (sub)step: the next inflow from there does not depend on its length. Smoke is removed from
 /// solids. For moving solids this is recorded once, at the end of the step.
 template <int D>
-void FlowSolver<D>::hold() {
-    for (auto& field : state_.fields) field.hold();
+void FlowSolver<D>::enforce_sources() {
+    for (auto& field : state_.fields) field.enforce_sources();
     if (!solids_.moving()) clear_solids();
 }
 
@@ -533,9 +534,9 @@ void FlowSolver<D>::check_own_planes() const {
 
 /// Gathers the planes of other ranks for reading whole fields; collective. With distributed storage it fills the ghost planes only.
 template <int D>
-void FlowSolver<D>::make_whole() const {
+void FlowSolver<D>::gather_whole() const {
     if (whole_) return;
-    if (held_.alone()) return bring_beside();
+    if (held_.distributed()) return fill_ghosts();
     const OwnPlanes mine(held_.cut());
     auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(state.u[a]);
@@ -545,7 +546,7 @@ void FlowSolver<D>::make_whole() const {
 }
 
 template <int D>
-void FlowSolver<D>::bring_beside() const {
+void FlowSolver<D>::fill_ghosts() const {
     const OwnPlanes mine = held_.own();
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all;
@@ -576,10 +577,10 @@ StepLimit FlowSolver<D>::stable_dt() const {
 
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.looking();
     FieldSet set = field_set(state_);
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
         vorticity(state_, vorticity_);
@@ -600,12 +601,12 @@ FieldSet FlowSolver<D>::fields() const {
 
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.looking();
     auto list = flow::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
-    if (hand_) geometry::sum_up(*hand_, D, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (!solids_.any()) return list;
     if (bodies_)
         for (auto& integral : bodies_->bodies().integrals(bodies_->gravity())) list.push_back(std::move(integral));
@@ -627,10 +628,11 @@ void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
         friction = walls_->friction(state_);
     }
     const std::string force_unit = D == 2 ? "N/m" : "N", torque_unit = D == 2 ? "N" : "N m";
-    const auto add = [&](const std::string& quantity, const std::string& letter, const std::string& unit, real by_pressure, real rubbed) {
-        list.push_back({"solid_" + quantity + letter, unit, by_pressure + rubbed});
+    const auto add = [&](const std::string& quantity, const std::string& letter, const std::string& unit, real by_pressure,
+                         real by_friction) {
+        list.push_back({"solid_" + quantity + letter, unit, by_pressure + by_friction});
         list.push_back({"solid_pressure_" + quantity + letter, unit, by_pressure});
-        list.push_back({"solid_friction_" + quantity + letter, unit, rubbed});
+        list.push_back({"solid_friction_" + quantity + letter, unit, by_friction});
     };
     for (int a = 0; a < D; ++a) {
         const std::string letter(1, "xyz"[a]);
@@ -643,13 +645,13 @@ void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
 
 template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
-    if (!held_.alone()) make_whole();
+    if (!held_.distributed()) gather_whole();
     const OwnPlanes mine = held_.looking();
     state_.save(to);
     if (bodies_) bodies_->save(to);
     to.put_value("impulse", impulse_);
     if (heat_) heat_->save(to);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     to.put_value("smoke_in_solids", std::array<real, 2>{smoke_removed_, smoke_continued_});
 }
 
@@ -661,9 +663,9 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     }
     if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
-    if (hand_ && from.has("hand")) hand_->restore(from);
-    whole_ = !held_.alone();
-    make_whole();
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
+    whole_ = !held_.distributed();
+    gather_whole();
     if (walls_) walls_->forget();
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");

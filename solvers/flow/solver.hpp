@@ -41,10 +41,10 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     std::vector<EditableField> editable() override;
     void edited(const EditableField& field) override;
     void save(Checkpoint& to) const override;
@@ -71,9 +71,9 @@ private:
     int planes_to_extend() const;
     void fill_field_planes();
     void extend_fields();
-    void rub(real t, real dt);
-    void depart(real dt);
-    void arrive(real dt);
+    void move_no_slip_bodies(real t, real dt);
+    void explicit_terms_before_advection(real dt);
+    void explicit_terms_after_advection(real dt);
     void advect_fields(real dt);
     void advect_velocity(real dt);
     void blend(const Substep& stage);
@@ -82,10 +82,10 @@ private:
     void move_solids(real t, real dt);
     void place_solids(real t, real dt);
     void conduct(real dt);
-    void lift(real dt);
-    void slow(real dt);
+    void apply_buoyancy(real dt);
+    void apply_ice_drag(real dt);
     void project(real dt);
-    void hold();
+    void enforce_sources();
     void clear_solids();
     void remember_solids();
     real rate(real fluid) const;
@@ -93,9 +93,9 @@ private:
     StepReport report(real dt);
     void refresh_fields();
     void check_own_planes() const;
-    void make_whole() const;
+    void gather_whole() const;
 
-    void bring_beside() const;
+    void fill_ghosts() const;
     void add_loads(std::vector<Integral>& list) const;
 
     HeldPlanes held_;
@@ -124,7 +124,7 @@ private:
     bool wants_vorticity_ = false, wants_divergence_ = false;
     mutable std::vector<Grid<real, D>> vorticity_;  // computed on request
     mutable Grid<real, D> divergence_;
-    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
     std::vector<WithBoundary<D>> remembered_fields_, remembered_;  // uⁿ, qⁿ and both
     std::vector<WithBoundary<D>> carried_velocity_;

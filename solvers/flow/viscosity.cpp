@@ -34,14 +34,14 @@ scene::Key time_key() {
 /// A time scheme, and whether half of the explicit part is applied at the departure points.
 struct TimeRule {
     Time time;
-    bool departs;
+    bool explicit_half_before;
     WallShares walls() const {
-        return {time == Time::implicit ? 0.0 : 0.5, !departs && time != Time::implicit, before_share(), implicit_share()};
+        return {time == Time::implicit ? 0.0 : 0.5, !explicit_half_before && time != Time::implicit, before_share(), implicit_share()};
     }
     TimeRule(const scene::Table& table, const scene::Scene& scene)
-        : time(time_named(table.text("scheme"))), departs(scheme_of(scene) == Scheme::maccormack && time != Time::implicit) {}
+        : time(time_named(table.text("scheme"))), explicit_half_before(scheme_of(scene) == Scheme::maccormack && time != Time::implicit) {}
     /// Weight of the previous Laplacian at the arrival points, and that of the Laplacian at the end of the step.
-    real before_share() const { return departs ? 0.5 : 1; }
+    real before_share() const { return explicit_half_before ? 0.5 : 1; }
     real implicit_share() const { return time == Time::implicit ? 1 : 0.5; }
 };
 
@@ -116,15 +116,15 @@ struct Viscosity final : MacEffect<D> {
     TimeRule rule;
     std::vector<Diffuser<D>> axes;
     std::unique_ptr<BodyFriction<D>> friction;  // nullptr without no-slip bodies
-    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) { refuse_friction_of_before(table, scene); }
+    Viscosity(const scene::Table& table, const scene::Scene& scene) : rule(table, scene) { refuse_explicit_friction(table, scene); }
     Stage stage() const override { return rule.time == Time::explicit_ ? Stage::force : Stage::implicit; }
-    void depart(MacState<D>& s, real dt) override {
-        if (rule.departs) add(s, dt);
+    void apply_before_advection(MacState<D>& s, real dt) override {
+        if (rule.explicit_half_before) add(s, dt);
     }
     void apply(MacState<D>& s, real dt) override {
         if (s.nu == 0) return;
         if (rule.time == Time::explicit_) return add(s, dt);
-        if (s.grip) return rub(s, dt);
+        if (s.no_slip_walls) return viscosity_with_bodies(s, dt);
         prepare(s);
         add_gradient(s.u, s, -dt / s.rho);
         for (int a = 0; a < D; ++a)
@@ -143,7 +143,7 @@ struct Viscosity final : MacEffect<D> {
     }
 
 private:
-    void rub(MacState<D>& s, real dt) {
+    void viscosity_with_bodies(MacState<D>& s, real dt) {
         if (!friction) friction = std::make_unique<BodyFriction<D>>(s);
         add_gradient(s.u, s, -dt / s.rho);
         friction->solve(s, dt);
@@ -190,8 +190,8 @@ struct Diffusion final : MacEffect<D> {
     void needs(FieldPlan& plan) const override {
         for (const auto& carried : list) plan.advected(carried.name);
     }
-    void depart(MacState<D>& s, real dt) override {
-        if (!rule.departs) return;
+    void apply_before_advection(MacState<D>& s, real dt) override {
+        if (!rule.explicit_half_before) return;
         for (auto& carried : list) {
             auto& field = prepare(s, carried);
             carried.diffuser->add(field.before, dt * carried.kappa, field.values);

@@ -46,7 +46,7 @@ Columns::Columns(const scene::Scene& scene)
       periodic_z_(state_.sides(1, 0).kind == SideKind::periodic),
       sweep_(state_.plane, periodic_x_, periodic_z_),
       floats_(make_floats(scene, state_.plane), state_.plane, state_.bed, state_.h, state_.g, state_.rho, periodic_x_, periodic_z_),
-      hand_(geometry::make_hand(scene, {HandKind::pour, HandKind::drain})),
+      brush_forcing_(geometry::make_brush(scene, {BrushKind::pour, BrushKind::drain})),
       depth_(state_.plane.extent()),
       nothing_(state_.plane.extent()),
       cfl_(scene.number("time.cfl")) {
@@ -73,7 +73,7 @@ Columns::Columns(const scene::Scene& scene)
         }
     }
     if (scene.effect("gravity")) plans_.push_back({.name = "gravity", .inside = "move columns"});
-    if (hand_) plans_.push_back({.name = "hand", .pass = effect_pass("hand")});
+    if (brush_forcing_) plans_.push_back({.name = "hand", .pass = effect_pass("hand")});
     if (const auto* t = scene.effect("damping")) {
         damping_ = t->number("rate");
         plans_.push_back({.name = "damping", .pass = effect_pass("damping")});
@@ -86,7 +86,7 @@ void Columns::make_stiffness() {
     const Plane& plane = state_.plane;
     const Field& depth = state_.h;
     const auto pull = [&](real a, real b, real d) { return a > 0 && b > 0 ? state_.g * 0.5 * (a + b) / (d * d) : 0; };
-    const real first = over_ranks() ? of_ranks(slabs().rank() == 0 ? depth[0] : 0)[0] : depth[0];
+    const real first = is_distributed() ? of_ranks(slabs().rank() == 0 ? depth[0] : 0)[0] : depth[0];
     const real uneven = sum_of_columns(plane, [&](std::size_t c) { return std::abs(depth[c] - first) <= 1e-12 * first ? 0.0 : 1.0; });
     k_.uniform = floats_.empty() && uneven == 0;
     k_.along_x = pull(first, first, plane.dx), k_.along_z = plane.dim == 3 ? pull(first, first, plane.dz) : 0;
@@ -117,11 +117,11 @@ real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pa
 
 StepReport Columns::step(real dt) {
     const OwnPlanes mine = held_.own();
-    brought_ = held_.cut().empty();
+    ghosts_filled_ = held_.cut().empty();
     refresh(surface_, periodic_z_);
-    if (hand_) {
+    if (brush_forcing_) {
         const auto timed = passes_.time("effect hand");
-        pour_and_drain(*hand_, state_, surface_, dt, [&](std::size_t c) { return floats_.covers(c); });
+        apply_sources_and_sinks(*brush_forcing_, state_, surface_, dt, [&](std::size_t c) { return floats_.covers(c); });
     }
     if (!floats_.empty()) {
         const auto timed = passes_.time("place floats");
@@ -135,7 +135,7 @@ StepReport Columns::step(real dt) {
         const auto timed = passes_.time("floats");
         floats_.after(dt, surface_, rate_);
     }
-    state_.poured += dt * through_;  // the sweep used the rates before sides and damping change them
+    state_.net_inflow += dt * through_;  // the sweep used the rates before sides and damping change them
     if (damping_ > 0) {
         const auto timed = passes_.time("effect damping");
         const real left = std::exp(-dt * damping_);
@@ -145,14 +145,14 @@ StepReport Columns::step(real dt) {
         });
         through_ *= left;
     }
-    if (state_.sides.any_open()) let_out(dt);
+    if (state_.sides.any_open()) outflow_at_open_sides(dt);
     state_.time += dt;
     if (++steps_ % checked_every == 0) check();
     return {.dt = dt, .cfl = dt / limit_, .iterations = floats_.iterations()};
 }
 
 /// Open sides absorb waves: the discharge through the side is c times the wave's height, so dw/dt = -c/dx w there.
-void Columns::let_out(real dt) {
+void Columns::outflow_at_open_sides(real dt) {
     const Plane& plane = state_.plane;
     const auto slow = [&](int i, int r, real d) -> real {
         if (!is_own_plane(r)) return 0;
@@ -170,7 +170,7 @@ void Columns::let_out(real dt) {
         for (std::size_t i = 0; i < taken_[2 + end].size(); ++i)
             taken_[2 + end][i] = slow(static_cast<int>(i), first ? 0 : plane.nz - 1, plane.dz);
     }
-    if (over_ranks()) gather_taken();
+    if (is_distributed()) gather_taken();
     real taken = 0;
     for (const std::size_t side : {0, 2, 1, 3})  // x_min, z_min, x_max, z_max
         for (const real change : taken_[side]) taken += change;
@@ -210,17 +210,17 @@ void Columns::check() const {
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void Columns::bring() const {
-    if (brought_) return;
+void Columns::fill_ghosts() const {
+    if (ghosts_filled_) return;
     const OwnPlanes mine = held_.own();
     auto& own = const_cast<Columns&>(*this);  // only rows of other ranks are written: the state does not change
-    if (held_.alone()) {
+    if (held_.distributed()) {
         const std::array<Planes, 2> all{planes_of(own.surface_), planes_of(own.rate_)};
         slabs().refresh(held_.cut(), all, 1, periodic_z_);
     } else {
         for (Field* field : {&own.surface_, &own.rate_}) gather(*field);
     }
-    brought_ = true;
+    ghosts_filled_ = true;
 }
 
 std::string Columns::concern() const {
@@ -231,7 +231,7 @@ std::string Columns::concern() const {
 }
 
 FieldSet Columns::fields() const {
-    bring();
+    fill_ghosts();
     const OwnPlanes mine = held_.looking();
     for_each_column_near(state_.plane, [&](std::size_t c) { depth_[c] = surface_[c] - state_.bed[c]; });
     FieldSet set{.grid = state_.plane.view(),
@@ -246,7 +246,7 @@ FieldSet Columns::fields() const {
         set.fields.push_back({"displaced", "m", Where::cell, "", {displaced_.values()}});
         floats_.show(set);
     }
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     return set;
 }
 
@@ -265,10 +265,10 @@ std::vector<Integral> Columns::integrals() const {
     });
     const std::string volume_unit = state_.plane.dim == 2 ? "m^2" : "m^3", per_depth = state_.plane.dim == 2 ? "/m" : "";
     std::vector<Integral> list = {{"volume", volume_unit, volume},
-                                  {"poured_volume", volume_unit, state_.poured},
-                                  {"volume_balance", volume_unit, volume - state_.poured},
+                                  {"poured_volume", volume_unit, state_.net_inflow},
+                                  {"volume_balance", volume_unit, volume - state_.net_inflow},
                                   {"potential_energy", "J" + per_depth, 0.5 * state_.rho * state_.g * raised}};
-    if (hand_) geometry::sum_up(*hand_, state_.plane.dim, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, state_.plane.dim, list);
     for (std::size_t b = 0; b < floats_.count(); ++b) {
         const std::string name = fmt::format("float{}_", b);
         const Pushed& p = floats_.pushed(b);
@@ -301,19 +301,19 @@ void Columns::edited(const EditableField& field) {
             throw BadInput(fmt::format("\"{}\" at {}: the bed is at {} m, and scheme.model = \"columns\" {}", field.name, c, state_.bed[c],
                                        is_wet(c) ? "does not support drying" : "does not support wetting"));
     });
-    state_.poured += volume() - volume_before_;
+    state_.net_inflow += volume() - volume_before_;
 }
 
 void Columns::save(Checkpoint& to) const {
-    if (!held_.alone()) bring();
+    if (!held_.distributed()) fill_ghosts();
     const OwnPlanes mine = held_.looking();
     put_planes(to, "surface", surface_);
     put_planes(to, "rate", rate_);
     to.put_value("time", state_.time);
-    to.put_value("poured", state_.poured);
+    to.put_value("poured", state_.net_inflow);
     to.put_value("through", through_);
     to.put_value("steps", steps_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     if (!floats_.empty()) floats_.save(to);
 }
 
@@ -324,12 +324,12 @@ void Columns::restore(const Checkpoint& from) {
         get_planes(from, "rate", rate_);
     }
     state_.time = from.get_value<real>("time");
-    state_.poured = from.get_value<real>("poured");
+    state_.net_inflow = from.get_value<real>("poured");
     through_ = from.get_value<real>("through");
     steps_ = from.get_value<std::int64_t>("steps");
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
-    brought_ = !held_.alone();
+    ghosts_filled_ = !held_.distributed();
 }
 
 std::size_t Columns::bytes() const {

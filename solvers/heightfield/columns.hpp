@@ -1,8 +1,8 @@
 // Columns of water as in real-time graphics (sweep.hpp), with floating or dragged objects (floats.hpp).
 #pragma once
+#include "heightfield/brush.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/floats.hpp"
-#include "heightfield/hand.hpp"
 #include "heightfield/sweep.hpp"
 
 namespace weir::heightfield {
@@ -16,10 +16,10 @@ public:
     StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }
     std::string concern() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     real time() const override { return state_.time; }
     void save(Checkpoint& to) const override;
     void restore(const Checkpoint& from) override;
@@ -32,9 +32,9 @@ public:
 
 private:
     void make_stiffness();
-    void let_out(real dt);
+    void outflow_at_open_sides(real dt);
     void gather_taken();
-    void bring() const;
+    void fill_ghosts() const;
     void check() const;
     real volume() const;
     bool is_wet(std::size_t c) const { return state_.h[c] > 0; }
@@ -48,11 +48,11 @@ private:
     Sweep sweep_;
     Floats floats_;
     std::vector<EffectPlan> plans_;
-    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     mutable Field depth_, displaced_;
     Field nothing_;
     std::array<std::vector<real>, 4> taken_;  // absorbed by open sides, per adjacent column: x_min, x_max, z_min, z_max
-    mutable bool brought_ = true;             // whether ghost rows, or all rows, are up to date
+    mutable bool ghosts_filled_ = true;       // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;
     real through_ = 0;  // volume rate through sides [m^3/s]

@@ -1,7 +1,7 @@
 #include "heightfield/effects.hpp"
 
 #include "core/grid.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "scene/gravity.hpp"
 
 #include <algorithm>
@@ -100,15 +100,15 @@ public:
     void apply(State& s, real dt) override {
         const real seconds = std::min(s.time + dt, end_) - std::max(s.time, start_), depth = rate_ * std::max(0.0, seconds);
         if (depth == 0) return;
-        s.poured += s.plane.area() * depth * plane_sum(s.plane.nz, [&](int k) {
-                        real sum = 0;
-                        for (int i = 0; i < s.plane.nx; ++i) {
-                            const std::size_t c = s.plane.at(i, k);
-                            s.h[c] += depth * on_[c];
-                            sum += on_[c];
-                        }
-                        return sum;
-                    });
+        s.net_inflow += s.plane.area() * depth * plane_sum(s.plane.nz, [&](int k) {
+                            real sum = 0;
+                            for (int i = 0; i < s.plane.nx; ++i) {
+                                const std::size_t c = s.plane.at(i, k);
+                                s.h[c] += depth * on_[c];
+                                sum += on_[c];
+                            }
+                            return sum;
+                        });
     }
     std::size_t bytes() const override { return on_.bytes(); }
 
@@ -147,7 +147,7 @@ std::vector<scene::Variant> effect_schemas() {
           {.name = "start", .type = Type::number, .doc = "Start time.", .unit = "s", .fallback = 0.0, .min = 0},
           {.name = "end", .type = Type::number, .doc = "End time.", .unit = "s", .min = 0}},
          {"rate"}},
-        geometry::hand_schema()};
+        geometry::brush_schema()};
 }
 
 Effects<State> make_effects(const scene::Scene& scene, const State& state, const char* moved_in) {

@@ -151,9 +151,9 @@ std::unique_ptr<Solver> make(const scene::Scene& scene) {
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
-void over_ranks(const scene::Scene& scene) {
+void check_parallel(const scene::Scene& scene) {
     if (scene.dim() == 3 && !scene.root().tables("floats").empty()) scene::one_process_only(scene, "floats", "floating objects are");
-    scene::refuse_hand(scene);
+    scene::refuse_brush(scene);
 }
 
 /// Messages of a step in parallel: ghost rows before each stage, and reductions over rows.
@@ -212,7 +212,7 @@ scene::SolverKind kind() {
             {{"velocity", "depth", "surface", "bed"},
              {"move water"},
              "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"},
-            over_ranks,
+            check_parallel,
             scene::Shared::by_planes,
             {},
             holds_own_rows,

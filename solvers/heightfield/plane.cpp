@@ -12,7 +12,7 @@ HeldPlanes held_rows(const scene::Scene& scene) {
 }
 
 std::vector<PlaneRange> rows_near(const Plane& plane) {
-    if (!over_ranks()) return {{0, plane.nz}};
+    if (!is_distributed()) return {{0, plane.nz}};
     const std::vector<char> near = planes_near(plane.nz, rows_beside, detail::own_share.ring);
     std::vector<PlaneRange> runs;
     for (int k = 0; k < plane.nz; ++k) {
@@ -24,7 +24,7 @@ std::vector<PlaneRange> rows_near(const Plane& plane) {
 }
 
 std::int64_t first_of_ranks(std::int64_t column) {
-    if (!over_ranks()) return column;
+    if (!is_distributed()) return column;
     std::int64_t first = -1;
     for (const std::int64_t found : of_ranks(column))
         if (found >= 0 && (first < 0 || found < first)) first = found;

@@ -27,9 +27,9 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
       nothing_(state_.h.extent()),
       raised_(make_raised_bed(scene, state_.plane)),
       effects_(make_effects(scene, state_, "move water")),
-      hand_(geometry::make_hand(scene, geometry::moving_kinds)),
+      brush_forcing_(geometry::make_brush(scene, geometry::moving_kinds)),
       cfl_(scene.number("time.cfl")) {
-    if (hand_) effects_.add("hand", hand_effect(hand_));
+    if (brush_forcing_) effects_.add("hand", brush_effect(brush_forcing_));
     if (cfl_ > most_cfl) scene.refuse("time.cfl", "more than half a column per step: the depth may become negative", "cfl is at most 0.5");
     if (raised_ && raised_->moves())
         terrain_ = make_terrain(scene, state_.plane);
@@ -59,7 +59,7 @@ void ShallowWater::measure() {
 /// Audusse et al. 2004 with Heun's method.
 StepReport ShallowWater::step(real dt) {
     const OwnPlanes mine = held_.own();
-    brought_ = held_.cut().empty();
+    ghosts_filled_ = held_.cut().empty();
     const real cfl = dt * rate_;
     effects_.apply(Stage::source, state_, dt, passes_);
     if (raised_) raise_bed(state_.time + dt);
@@ -79,43 +79,43 @@ void ShallowWater::raise_bed(real t) {
 void ShallowWater::move_water(real dt) {
     const auto timed = passes_.time("move water");
     const Water now{state_.h.data(), state_.qx.data(), state_.qz.data()}, next{h1_.data(), qx1_.data(), qz1_.data()};
-    bring_beside({&state_.h, &state_.qx, &state_.qz}, rows_beside);
+    fill_ghost_rows({&state_.h, &state_.qx, &state_.qz}, rows_beside);
     rows_.stage({.state = state_, .from = now, .to = next, .dt = dt, .second = false}, reports_);
     take_reports(0.5);
-    bring_beside({&h1_, &qx1_, &qz1_}, rows_beside);
+    fill_ghost_rows({&h1_, &qx1_, &qz1_}, rows_beside);
     rows_.stage({.state = state_, .from = next, .to = now, .dt = dt, .second = true}, reports_);
     take_reports(0.5);
 }
 
 /// In parallel, fills the ghost rows: the two reconstructions of a face read two.
-void ShallowWater::bring_beside(const std::array<Field*, 3>& water, int deep) const {
-    if (!over_ranks()) return;
+void ShallowWater::fill_ghost_rows(const std::array<Field*, 3>& water, int ghost_planes) const {
+    if (!is_distributed()) return;
     const std::array<Planes, 3> all{planes_of(*water[0]), planes_of(*water[1]), planes_of(*water[2])};
-    slabs().refresh(held_.cut(), all, deep, held_.ring());
+    slabs().refresh(held_.cut(), all, ghost_planes, held_.ring());
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void ShallowWater::bring() const {
-    if (brought_) return;
+void ShallowWater::fill_ghosts() const {
+    if (ghosts_filled_) return;
     const OwnPlanes mine = held_.own();
     auto& state = const_cast<State&>(state_);  // only rows of other ranks are written: the state does not change
-    if (held_.alone()) {
-        bring_beside({&state.h, &state.qx, &state.qz}, 1);
+    if (held_.distributed()) {
+        fill_ghost_rows({&state.h, &state.qx, &state.qz}, 1);
     } else {
         for (Field* field : {&state.h, &state.qx, &state.qz}) gather(*field);
         if (raised_) gather(state.bed);
     }
-    brought_ = true;
+    ghosts_filled_ = true;
 }
 
 void ShallowWater::take_reports(real weight) {
-    if (over_ranks()) slabs().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
+    if (is_distributed()) slabs().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
     volume_ = 0, rate_ = 0;
     for (const RowReport& r : reports_) {
         volume_ += r.volume * state_.plane.dz;
         rate_ = std::max(rate_, r.rate);
         clipped_ = std::max(clipped_, -r.lowest);
-        state_.poured += weight * r.through;
+        state_.net_inflow += weight * r.through;
     }
     if (!std::isfinite(volume_)) throw NumericalFailure("depth", "depth is no longer finite");
 }
@@ -128,7 +128,7 @@ StepLimit ShallowWater::stable_dt() const {
 }
 
 FieldSet ShallowWater::fields() const {
-    bring();
+    fill_ghosts();
     const OwnPlanes mine = held_.looking();
     const WiderPlanes beside(1);
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
@@ -147,7 +147,7 @@ FieldSet ShallowWater::fields() const {
                             {"surface", "m", Where::cell, "", {h1_.values()}},
                             {"bed", "m", Where::cell, "", {state_.bed.values()}}}};
     if (!qz.empty()) set.fields[0].data.push_back(qz1_.values());
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     return set;
 }
 
@@ -162,15 +162,15 @@ std::vector<Integral> ShallowWater::integrals() const {
     const bool flat = plane.dim == 2;
     const std::string volume_unit = flat ? "m^2" : "m^3", per_depth = flat ? "/m" : "";
     std::vector<Integral> list = {{"volume", volume_unit, volume},
-                                  {"poured_volume", volume_unit, state_.poured},
-                                  {"volume_balance", volume_unit, volume - state_.poured},
+                                  {"poured_volume", volume_unit, state_.net_inflow},
+                                  {"volume_balance", volume_unit, volume - state_.net_inflow},
                                   {"kinetic_energy", "J" + per_depth, 0.5 * state_.rho * kinetic},
                                   {"potential_energy", "J" + per_depth, state_.rho * state_.g * weight},
                                   {"momentum_x", "kg m/s" + per_depth, state_.rho * sum([&](std::size_t c) { return qx[c]; })}};
     if (!qz.empty()) list.push_back({"momentum_z", "kg m/s", state_.rho * sum([&](std::size_t c) { return qz[c]; })});
     list.push_back({"wet_area", flat ? "m" : "m^2", sum([&](std::size_t c) { return h[c] > state_.dry ? 1.0 : 0.0; })});
     list.push_back({"raised_depth", "m", clipped_});
-    if (hand_) geometry::sum_up(*hand_, plane.dim, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, plane.dim, list);
     return list;
 }
 
@@ -194,22 +194,22 @@ void ShallowWater::edited(const EditableField&) {
         if (!qz1_.empty()) state_.qz[c] = wet * qz1_[c];
     });
     measure();
-    state_.poured += volume_ - before;
+    state_.net_inflow += volume_ - before;
 }
 
 void ShallowWater::save(Checkpoint& to) const {
-    if (!held_.alone()) bring();
+    if (!held_.distributed()) fill_ghosts();
     const OwnPlanes mine = held_.looking();
     put_planes(to, "depth", state_.h);
     put_planes(to, "discharge_x", state_.qx);
     put_planes(to, "discharge_z", state_.qz);
     put_planes(to, "bed", state_.bed);
     to.put_value("time", state_.time);
-    to.put_value("poured", state_.poured);
+    to.put_value("poured", state_.net_inflow);
     to.put_value("volume", volume_);
     to.put_value("rate", rate_);
     to.put_value("clipped", clipped_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
 }
 
 void ShallowWater::restore(const Checkpoint& from) {
@@ -220,12 +220,12 @@ void ShallowWater::restore(const Checkpoint& from) {
     get_planes(from, "bed", state_.bed);
     refresh(state_.bed, held_.ring(), rows_beside);
     state_.time = from.get_value<real>("time");
-    state_.poured = from.get_value<real>("poured");
+    state_.net_inflow = from.get_value<real>("poured");
     volume_ = from.get_value<real>("volume");
     rate_ = from.get_value<real>("rate");
     clipped_ = from.get_value<real>("clipped");
-    if (hand_ && from.has("hand")) hand_->restore(from);
-    brought_ = !held_.alone();
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
+    ghosts_filled_ = !held_.distributed();
 }
 
 std::size_t ShallowWater::bytes() const {

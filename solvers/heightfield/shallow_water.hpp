@@ -1,7 +1,7 @@
 // The shallow-water equations on a plane of columns: second order in space and time, well balanced, no negative depth.
 #pragma once
+#include "heightfield/brush.hpp"
 #include "heightfield/effects.hpp"
-#include "heightfield/hand.hpp"
 #include "heightfield/rows.hpp"
 #include "heightfield/start.hpp"
 
@@ -14,10 +14,10 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     real time() const override { return state_.time; }
     std::vector<EditableField> editable() override;
     void edited(const EditableField& field) override;
@@ -33,8 +33,8 @@ private:
     void take_reports(real weight);
     void raise_bed(real t);
     void measure();
-    void bring_beside(const std::array<Field*, 3>& water, int deep) const;
-    void bring() const;
+    void fill_ghost_rows(const std::array<Field*, 3>& water, int ghost_planes) const;
+    void fill_ghosts() const;
 
     HeldPlanes held_;
     State state_;
@@ -44,8 +44,8 @@ private:
     Field terrain_, nothing_;       // the bed without solids, where these move; the vertical velocity
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
-    std::shared_ptr<Hand> hand_;   // nullptr where the scene has none
-    mutable bool brought_ = true;  // whether ghost rows, or all rows, are up to date
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
+    mutable bool ghosts_filled_ = true;            // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

@@ -16,7 +16,7 @@ struct State {
     real dry = 0;           // depth below which water is at rest [m]
     Field h, qx, qz, bed;   // [m], [m^2/s], [m^2/s], [m]
     real time = 0;          // at the start of the step [s]
-    real poured = 0;        // volume that came in through sides and as rain since the start, minus outflow [m^3]
+    real net_inflow = 0;    // volume that came in through sides and as rain since the start, minus outflow [m^3]
 
     explicit State(const scene::Scene& scene);
     std::size_t bytes() const { return h.bytes() + qx.bytes() + qz.bytes() + bed.bytes(); }

@@ -42,7 +42,7 @@ std::vector<std::byte> tail_of(const DataArray& array) {
     const OwnBlocks own(array);
     std::vector<std::byte> tail((own.tail_end() - own.last) * array.bytes_of_number),
         head((own.head_end() - own.first) * array.bytes_of_number);
-    std::vector<Parcel> parcels;
+    std::vector<Message> messages;
     if (!head.empty()) {
         array.numbers->copy(own.first, own.head_end() - own.first, head.data());
         const auto began_it = [&](int rank) {
@@ -51,16 +51,16 @@ std::vector<std::byte> tail_of(const DataArray& array) {
         };
         int owner = slabs().rank() - 1;
         while (!began_it(owner)) --owner;
-        parcels.push_back({owner, head.data(), head.size(), nullptr, 0});
+        messages.push_back({owner, head.data(), head.size(), nullptr, 0});
     }
     for (int rank = slabs().rank() + 1; rank < slabs().ranks(); ++rank) {
         const OwnBlocks next(array, rank);
         const std::size_t begin = next.first, end = std::min(next.last, own.tail_end());
         if (begin >= end) continue;
-        parcels.push_back(
+        messages.push_back(
             {rank, nullptr, 0, tail.data() + (begin - own.last) * array.bytes_of_number, (end - begin) * array.bytes_of_number});
     }
-    slabs().trade(parcels);
+    slabs().exchange(messages);
     return tail;
 }
 

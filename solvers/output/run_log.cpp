@@ -54,13 +54,13 @@ RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene, const std:
     head_.erase(head_.rfind('\n'));  // without the closing brace: more keys follow
 }
 
-void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string& by_all, const std::vector<Traffic>& sent,
+void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string& replicated_work, const std::vector<Traffic>& sent,
                        const std::vector<RankState>& states) {
     json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank stores whole grids"}};
     if (holds == Holds::own_planes) ranks["storage"] = "every rank stores its slab and ghost planes";
     if (holds == Holds::own_particles)
         ranks["cut"] = "equal numbers of particles", ranks["storage"] = "every rank stores its own and ghost particles";
-    if (!by_all.empty()) ranks["every_rank_does"] = by_all;
+    if (!replicated_work.empty()) ranks["every_rank_does"] = replicated_work;
     for (const Traffic& rank : sent) {
         ranks["messages"].push_back(rank.messages);
         ranks["bytes"].push_back(rank.bytes);

@@ -37,7 +37,7 @@ public:
     enum class Holds { whole_grids, own_planes, own_particles };
     /// The partition among the ranks of the run, the storage, the replicated work (empty: none), and at the end each rank's traffic and
     /// memory; only called with several ranks.
-    void set_ranks(int count, const Cut& cut, Holds holds, const std::string& by_all, const std::vector<Traffic>& sent,
+    void set_ranks(int count, const Cut& cut, Holds holds, const std::string& replicated_work, const std::vector<Traffic>& sent,
                    const std::vector<RankState>& states);
     /// Replaces the file. Throws OutputError.
     void write() const;

@@ -56,7 +56,7 @@ void StepLog::add(std::int64_t step, real t, const StepReport& report, const Pas
             report.max_density_error,
             static_cast<real>(report.iterations),
             some(report.viscous_iterations),
-            some(report.viscous_turns),
+            some(report.viscous_coupling_iterations),
             report.residual_before,
             report.residual_after,
             report.residual_max};

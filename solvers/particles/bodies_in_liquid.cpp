@@ -54,14 +54,14 @@ void BodiesInLiquid<D>::begin(const Domain<D>& domain, real time, real dt) {
     around.reach = 2 * dt * (fastest + dt * norm(gravity_)) + spacing_;  // a particle may push a body this far
     contacts_.find(start_, around);
     meetings_.clear();
-    if (hand_) be_held(time, dt);
+    if (brush_forcing_) apply_grab(time, dt);
 }
 
 template <int D>
-void BodiesInLiquid<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& scene) {
-    hand_ = std::move(hand);
-    for (std::size_t i = 0; i < hand_->keys.size(); ++i)
-        if (hand_->keys[i].kind == HandKind::grab && hand_->keys[i].body >= static_cast<int>(bodies_->count()))
+void BodiesInLiquid<D>::follow(std::shared_ptr<BrushForcing> forcing, const scene::Scene& scene) {
+    brush_forcing_ = std::move(forcing);
+    for (std::size_t i = 0; i < brush_forcing_->keys.size(); ++i)
+        if (brush_forcing_->keys[i].kind == BrushKind::grab && brush_forcing_->keys[i].body >= static_cast<int>(bodies_->count()))
             scene.refuse("effects.hand.keyframes[" + std::to_string(i) + "].body", "there is no such body",
                          "numbers of the list bodies, from 0 to " + std::to_string(bodies_->count() - 1));
 }
@@ -69,26 +69,27 @@ void BodiesInLiquid<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& s
 /// Interactive forcing: dV/dt = rate (target - V) for the mass of the body and of the displaced liquid, implicit in V, so stable for any
 /// step. The factor of V is added to the mass (as in staggered/bodies_in_flow.cpp on a grid).
 template <int D>
-void BodiesInLiquid<D>::be_held(real time, real dt) {
-    const auto brush = hand_->at<D>(time);
-    hold_.body = brush.kind == HandKind::grab ? brush.body : -1;
-    if (hold_.body < 0) return;
-    const rigid::Body<D>& body = start_[static_cast<std::size_t>(hold_.body)];
-    const real water = (*bodies_)[static_cast<std::size_t>(hold_.body)].wet > 0 ? rho0_ * body.moments.volume : 0;
-    hold_.weight = dt * hand_->rate * (body.mass + water);
-    hold_.target = 0.25 * hand_->rate * (brush.centre - body.at);
+void BodiesInLiquid<D>::apply_grab(real time, real dt) {
+    const auto brush = brush_forcing_->at<D>(time);
+    grab_.body = brush.kind == BrushKind::grab ? brush.body : -1;
+    if (grab_.body < 0) return;
+    const rigid::Body<D>& body = start_[static_cast<std::size_t>(grab_.body)];
+    const real water = (*bodies_)[static_cast<std::size_t>(grab_.body)].wet > 0 ? rho0_ * body.moments.volume : 0;
+    grab_.weight = dt * brush_forcing_->rate * (body.mass + water);
+    grab_.target = 0.25 * brush_forcing_->rate * (brush.centre - body.at);
     const real most = spacing_ / dt;
-    for (int a = 0; a < D; ++a) hold_.target[a] = std::clamp(hold_.target[a], -most, most);
+    for (int a = 0; a < D; ++a) grab_.target[a] = std::clamp(grab_.target[a], -most, most);
 }
 
 /// Records the impulse of the interactive forcing: in the first exchange of a step the whole pull, in later ones its change with the
 /// velocity.
 template <int D>
-void BodiesInLiquid<D>::tell_hand(bool heavy) {
-    for (std::size_t a = 0; a < D && hold_.body >= 0; ++a) {
-        const std::size_t at = static_cast<std::size_t>(hold_.body) * n + a;
-        if ((*bodies_)[static_cast<std::size_t>(hold_.body)].held[a]) continue;
-        hand_->impulse[static_cast<int>(a)] += hold_.weight * (heavy ? hold_.target[static_cast<int>(a)] - velocity_[at] : -change_[at]);
+void BodiesInLiquid<D>::record_brush_impulse(bool heavy) {
+    for (std::size_t a = 0; a < D && grab_.body >= 0; ++a) {
+        const std::size_t at = static_cast<std::size_t>(grab_.body) * n + a;
+        if ((*bodies_)[static_cast<std::size_t>(grab_.body)].held[a]) continue;
+        brush_forcing_->impulse[static_cast<int>(a)] +=
+            grab_.weight * (heavy ? grab_.target[static_cast<int>(a)] - velocity_[at] : -change_[at]);
     }
 }
 
@@ -119,7 +120,7 @@ Vec<D> BodiesInLiquid<D>::change_at(const Meeting<D>& m) const {
 
 template <int D>
 Vec<D> BodiesInLiquid<D>::across(const Meeting<D>& m) const {
-    if (m.rub == 0) return {};
+    if (m.friction == 0) return {};
     const Vec<D> u = change_at(m);
     return u - dot(u, m.pull) / dot(m.pull, m.pull) * m.pull;
 }
@@ -139,8 +140,8 @@ void BodiesInLiquid<D>::sum_up() {
         const Twist push = seen(b, m.at, m.given), w = seen(b, m.at, m.pull);
         for (std::size_t k = 0; k < n; ++k) impulse_[b][k] -= mass_ * push[k];
         const real length2 = dot(m.pull, m.pull);
-        if (m.stiff > 0 || m.rub > 0) resist(matrix_[b], w, mass_ * (m.stiff - (m.rub > 0 ? m.rub / length2 : 0)));
-        for (int a = 0; a < D && m.rub > 0; ++a) resist(matrix_[b], seen(b, m.at, Vec<D>::unit(a)), mass_ * m.rub);
+        if (m.stiff > 0 || m.friction > 0) resist(matrix_[b], w, mass_ * (m.stiff - (m.friction > 0 ? m.friction / length2 : 0)));
+        for (int a = 0; a < D && m.friction > 0; ++a) resist(matrix_[b], seen(b, m.at, Vec<D>::unit(a)), mass_ * m.friction);
     }
 }
 
@@ -151,9 +152,9 @@ void BodiesInLiquid<D>::solve_for_velocities(real dt, bool heavy) {
     before_ = velocity_;
     for (std::size_t b = 0; b < count; ++b) {
         const rigid::Body<D>& body = (*bodies_)[b];
-        for (std::size_t a = 0; a < D && hold_.body == static_cast<int>(b); ++a) {
-            matrix_[b][a][a] += hold_.weight;
-            if (heavy) impulse_[b][a] += hold_.weight * (hold_.target[static_cast<int>(a)] - velocity_[n * b + a]);
+        for (std::size_t a = 0; a < D && grab_.body == static_cast<int>(b); ++a) {
+            matrix_[b][a][a] += grab_.weight;
+            if (heavy) impulse_[b][a] += grab_.weight * (grab_.target[static_cast<int>(a)] - velocity_[n * b + a]);
         }
         for (std::size_t k = 0; k < n; ++k) {
             free_[k] = !body.held[k];
@@ -200,7 +201,7 @@ void BodiesInLiquid<D>::exchange(Domain<D>& domain, real dt, bool heavy) {
     sum_up();
     solve_for_velocities(dt, heavy);
     count_forces();
-    tell_hand(heavy);
+    record_brush_impulse(heavy);
     for (std::size_t b = 0; b < bodies_->count(); ++b)
         for (std::size_t k = 0; k < n; ++k) {
             (*bodies_)[b].velocity[k] += change_[n * b + k];
@@ -215,7 +216,7 @@ void BodiesInLiquid<D>::move(Domain<D>& domain, real dt) {
         rigid::Body<D>& body = (*bodies_)[b];
         body.at = start_[b].at, body.orientation = start_[b].orientation;
         for (std::size_t k = 0; k < n; ++k) body.velocity[k] = velocity_[n * b + k];
-        body.fly(dt, dry_[b] ? -1.0 * gravity_ : Vec<D>{});  // the velocity already includes gravity in this step
+        body.advance_free(dt, dry_[b] ? -1.0 * gravity_ : Vec<D>{});  // the velocity already includes gravity in this step
     }
     bodies_->place(domain.solids);
 }

@@ -11,7 +11,7 @@
 // and each particle gets k w (w.dV) in return. K is the added mass of the liquid that responds within the step. No added mass is estimated,
 // no force is delayed, and total momentum is conserved.
 #pragma once
-#include "core/hand.hpp"
+#include "core/brush.hpp"
 #include "particles/fluid.hpp"
 #include "rigid/bodies.hpp"
 
@@ -30,7 +30,7 @@ struct Meeting {
     real part = 0, open = 1;   // the kernel's part inside the body, and its fraction not hidden by walls
     Vec<D> given{};            // velocity change of the particle due to the body [m/s]
     real stiff = 0;            // response to the body's velocity change along `pull` [m^2 or 1], and across it
-    real rub = 0;
+    real friction = 0;
 };
 
 template <int D>
@@ -51,7 +51,7 @@ public:
     /// Ratio of a time to the last step; 0 before the first.
     real over_last(real dt) const { return last_dt_ > 0 ? dt / last_dt_ : 0; }
     /// Enables interactive forcing of the bodies; rejects keyframes with a body index out of range.
-    void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
+    void follow(std::shared_ptr<BrushForcing> forcing, const scene::Scene& scene);
     /// Begins a step at `time`: stores the bodies' state, finds possible contacts, and the body grabbed by interactive forcing.
     void begin(const Domain<D>& domain, real time, real dt);
     /// The same; then applies gravity and moves the bodies for a time dt.
@@ -60,7 +60,7 @@ public:
     /// change of their particles.
     void exchange(Domain<D>& domain, real dt, bool heavy);
     /// The part of that due to the body's own velocity change.
-    Vec<D> back(const Meeting<D>& m) const { return m.stiff * closing(m) * m.pull + m.rub * across(m); }
+    Vec<D> back(const Meeting<D>& m) const { return m.stiff * closing(m) * m.pull + m.friction * across(m); }
     /// pull . change of the body's velocity at the particle.
     real closing(const Meeting<D>& m) const { return dot(m.pull, change_at(m)); }
     /// Moves the bodies from their positions at the start of the step with their velocities.
@@ -85,8 +85,8 @@ private:
     void sum_up();
     void solve_for_velocities(real dt, bool heavy);
     void count_forces();
-    void be_held(real time, real dt);
-    void tell_hand(bool heavy);
+    void apply_grab(real time, real dt);
+    void record_brush_impulse(bool heavy);
 
     std::shared_ptr<rigid::Bodies<D>> bodies_;
     Vec<D> gravity_{};
@@ -98,13 +98,13 @@ private:
     std::vector<Twist> impulse_, force_, gained_;  // of one exchange; of the step, from the fluid; velocity change by the fluid
     std::vector<Matrix> matrix_;
     real last_dt_ = 0;
-    std::shared_ptr<Hand> hand_;  // nullptr: no interactive forcing
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr: no interactive forcing
     /// The body that is grabbed in this step: the impulse is weight (target - V).
     struct {
         int body = -1;
         real weight = 0;
         Vec<D> target{};
-    } hold_;
+    } grab_;
     rigid::Mobility own_, inverse_, mobility_;
     std::vector<char> free_;
     std::vector<real> velocity_, before_, change_;

@@ -33,7 +33,7 @@ StateParams state_params_of(const DeviceEffects<D>& effects, const Domain<D>& do
     }
     p.margin = domain.margin;
     p.feel = 1e-3 * domain.spacing;
-    p.least_back = least_clamp * domain.spacing;
+    p.least_back = least_correction * domain.spacing;
     p.reach = support + 2 * domain.spacing;  // and the displacement by the corrections of one step
     return p;
 }
@@ -116,7 +116,7 @@ DeviceFluid<D>::DeviceFluid(Fluid<D> start, const DeviceEffects<D>& effects, con
     parts_ = device_->alloc(device_reduction_groups * 2 * D * sizeof(double));
     host_parts_.resize(device_reduction_groups * 2 * D);
     needed_ = device_->alloc(sizeof(int));
-    clamps = constant(std::array<std::uint32_t, 2>{});
+    corrections = constant(std::array<std::uint32_t, 2>{});
 }
 
 template <int D>
@@ -232,8 +232,8 @@ void DeviceFluid<D>::clear(const Memory& numbers, std::size_t bytes_per_particle
 template <int D>
 void DeviceFluid<D>::predict(real dt) {
     pass_time(dt);
-    run("predict", {count(), stride_, state_params, poses, dt, pull(dt), clamps, x, v, x_star});
-    hold_prediction(dt);
+    run("predict", {count(), stride_, state_params, poses, dt, pull(dt), corrections, x, v, x_star});
+    keep_frozen_prediction(dt);
 }
 
 template <int D>
@@ -276,18 +276,18 @@ real DeviceFluid<D>::max_speed() {
 
 template <int D>
 void DeviceFluid<D>::end_step() {
-    count_clamps();
+    count_corrections();
     if (++host_.steps % steps_between_reorders == 0 && count() > 0) reorder();
     cross_sides();
 }
 
 /// The device's counter is modulo 2^32; it also keeps the largest distance.
 template <int D>
-void DeviceFluid<D>::count_clamps() {
+void DeviceFluid<D>::count_corrections() {
     std::array<std::uint32_t, 2> seen{};
-    device_->download(seen.data(), clamps, sizeof seen);
-    host_.clamps.add(static_cast<std::uint32_t>(seen[0] - clamps_seen_), static_cast<real>(std::bit_cast<float>(seen[1])));
-    clamps_seen_ = seen[0];
+    device_->download(seen.data(), corrections, sizeof seen);
+    host_.corrections.add(static_cast<std::uint32_t>(seen[0] - corrections_seen_), static_cast<real>(std::bit_cast<float>(seen[1])));
+    corrections_seen_ = seen[0];
 }
 
 template <int D>
@@ -328,8 +328,8 @@ void DeviceFluid<D>::save(Checkpoint& to) const {
 template <int D>
 void DeviceFluid<D>::restore(const Checkpoint& from) {
     change().restore(from);
-    clamps_seen_ = 0;
-    device_->upload(clamps, std::array<std::uint32_t, 2>{}.data(), 2 * sizeof(std::uint32_t));
+    corrections_seen_ = 0;
+    device_->upload(corrections, std::array<std::uint32_t, 2>{}.data(), 2 * sizeof(std::uint32_t));
     effects_.emitters.restore(from);
 }
 

@@ -99,7 +99,7 @@ public:
         return memory;
     }
     /// Adds particles that enter in (time, time + dt], and removes those in sinks.
-    void let_in(real dt);
+    void add_inflow(real dt);
     /// v += dt f with the scene's forces; x* = x + dt v.
     void predict(real dt);
     /// Advances time and moves the solids.
@@ -117,12 +117,12 @@ public:
     /// After the neighbour search: the rest densities of particles that may boil.
     void expand();
     /// Frozen particles do not move: they have zero velocity and keep their position; or they move in pieces.
-    void hold();
-    void hold_again();
-    void hold_prediction(real dt);
-    void hold_places();
+    void stop_frozen();
+    void stop_frozen_again();
+    void keep_frozen_prediction(real dt);
+    void keep_frozen_positions();
     /// Updates the pieces of ice after the positions, whose displacements took dt; also after a drift of dt.
-    void arrive(real dt);
+    void finish_ice_motion(real dt);
     void carry_ice(real dt);
     bool ice_moves() const { return ice_ && effects_.heat->frozen() > 0; }
     /// Counts a step. At intervals the state is reordered to the sorted order for locality. Particles beyond sides are wrapped or removed.
@@ -179,7 +179,7 @@ public:
     Memory enthalpy;                                  // where particles have heat
     Memory rests;                                     // of sorted particles that may boil: their densities relative to the liquid's
     Memory order, a, b, neighbours, list;             // sorted particles: original index, float4, their neighbours
-    Memory clamps;                                    // number of boundary corrections, and the largest distance
+    Memory corrections;                               // number of boundary corrections, and the largest distance
     Memory near_solid, terms, poses;                  // solids: sorted particles near one, their terms there; poses
     Memory state_params, wall_params, kernel_params;  // constants
     const Memory& parts() const { return parts_; }
@@ -193,7 +193,7 @@ private:
     void exclusive_sums(int count, const Memory& in, const Memory& out);
     void build_list(const CellGrid& grid);
     void grow_list(int needed);
-    void count_clamps();
+    void count_corrections();
     void reorder();
     void cross_sides();
     void take_series(const plain::WallParams& walls);
@@ -218,7 +218,7 @@ private:
     real support_ = 0;
     DeviceEffects<D> effects_;
     real speed_ = 0;
-    std::uint32_t clamps_seen_ = 0;
+    std::uint32_t corrections_seen_ = 0;
     Memory solid_series_;
     Memory warming_, by_walls_, heat_pairs_, heat_walls_, heat_states_;
     Memory shift_, vapour_, above_;

@@ -57,26 +57,26 @@ void DeviceFluid<D>::expand() {
 }
 
 template <int D>
-void DeviceFluid<D>::hold() {
+void DeviceFluid<D>::stop_frozen() {
     if (!effects_.heat || count() == 0) return;
     if (device_is_old_) upload();
     if (ice_) return find_ice();
     effects_.heat->set_frozen(static_cast<int>(reduce("count_frozen", {count(), heat_states_, enthalpy, parts_}).sum));
-    if (effects_.heat->frozen() > 0) run("hold", {count(), stride_, heat_states_, enthalpy, v});
+    if (effects_.heat->frozen() > 0) run("stop_frozen", {count(), stride_, heat_states_, enthalpy, v});
 }
 
 template <int D>
-void DeviceFluid<D>::hold_prediction(real dt) {
+void DeviceFluid<D>::keep_frozen_prediction(real dt) {
     if (ice_ && count() > 0) return predict_ice(dt);
-    hold();
-    if (effects_.heat && effects_.heat->frozen() > 0) run("hold_prediction", {count(), stride_, heat_states_, enthalpy, x, x_star});
+    stop_frozen();
+    if (effects_.heat && effects_.heat->frozen() > 0) run("keep_frozen_prediction", {count(), stride_, heat_states_, enthalpy, x, x_star});
 }
 
 template <int D>
-void DeviceFluid<D>::hold_places() {
+void DeviceFluid<D>::keep_frozen_positions() {
     if (ice_moves()) return place_ice();
     if (effects_.heat && effects_.heat->frozen() > 0)
-        run("hold_places", {count(), stride_, state_params, heat_states_, order, enthalpy, x, a});
+        run("keep_frozen_positions", {count(), stride_, state_params, heat_states_, order, enthalpy, x, a});
 }
 
 template <int D>
@@ -104,12 +104,12 @@ template void DeviceFluid<2>::exchange(Heat<2>&, real, real);
 template void DeviceFluid<3>::exchange(Heat<3>&, real, real);
 template void DeviceFluid<2>::expand();
 template void DeviceFluid<3>::expand();
-template void DeviceFluid<2>::hold();
-template void DeviceFluid<3>::hold();
-template void DeviceFluid<2>::hold_prediction(real);
-template void DeviceFluid<3>::hold_prediction(real);
-template void DeviceFluid<2>::hold_places();
-template void DeviceFluid<3>::hold_places();
+template void DeviceFluid<2>::stop_frozen();
+template void DeviceFluid<3>::stop_frozen();
+template void DeviceFluid<2>::keep_frozen_prediction(real);
+template void DeviceFluid<3>::keep_frozen_prediction(real);
+template void DeviceFluid<2>::keep_frozen_positions();
+template void DeviceFluid<3>::keep_frozen_positions();
 template void DeviceFluid<2>::conduct(Heat<2>&, real);
 template void DeviceFluid<3>::conduct(Heat<3>&, real);
 

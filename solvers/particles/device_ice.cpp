@@ -33,7 +33,7 @@ void DeviceFluid<D>::find_ice() {
 template <int D>
 void DeviceFluid<D>::predict_ice(real dt) {
     find_ice();
-    ice_->fly(dt);
+    ice_->advance_free(dt);
     fetch(x_star, ice_places_);
     for (int i = 0; i < count_; ++i)
         if (ice_->fixed(i)) Fluid<D>::put(ice_places_, i, host_.position(i));
@@ -67,23 +67,23 @@ void DeviceFluid<D>::place_ice() {
 }
 
 template <int D>
-void DeviceFluid<D>::arrive(real dt) {
+void DeviceFluid<D>::finish_ice_motion(real dt) {
     if (!ice_moves()) return;
     fetch(x, host_.x), fetch(v, host_.v);
-    ice_->arrive(host_, dt);
+    ice_->finish_motion(host_, dt);
     send(host_.x, x), send(host_.v, v);
 }
 
 template <int D>
 void DeviceFluid<D>::carry_ice(real dt) {
     if (!ice_moves()) return;
-    ice_->fly(dt);
-    arrive(dt);
+    ice_->advance_free(dt);
+    finish_ice_motion(dt);
 }
 
 template <int D>
-void DeviceFluid<D>::hold_again() {
-    if (!ice_) return hold();
+void DeviceFluid<D>::stop_frozen_again() {
+    if (!ice_) return stop_frozen();
     if (!ice_moves()) return;
     fetch(x, host_.x), fetch(v, host_.v);
     ice_->move_as_one(host_);
@@ -96,9 +96,9 @@ void DeviceFluid<D>::hold_again() {
     template void DeviceFluid<D>::find_ice();                                                    \
     template void DeviceFluid<D>::predict_ice(real);                                             \
     template void DeviceFluid<D>::place_ice();                                                   \
-    template void DeviceFluid<D>::arrive(real);                                                  \
+    template void DeviceFluid<D>::finish_ice_motion(real);                                       \
     template void DeviceFluid<D>::carry_ice(real);                                               \
-    template void DeviceFluid<D>::hold_again();
+    template void DeviceFluid<D>::stop_frozen_again();
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
 #undef WEIR_INSTANTIATE

@@ -13,14 +13,14 @@ std::string text_of(const std::vector<geometry::ShapePtr<D>>& sinks) {
 }
 
 template <int D>
-void DeviceFluid<D>::let_in(real dt) {
+void DeviceFluid<D>::add_inflow(real dt) {
     auto& emitters = effects_.emitters;
     if (emitters.empty()) return;
     std::array<std::vector<real>, D> places, velocities;
     std::vector<real> enthalpies;
     emitters.emit(host_.time, dt, [&](const Vec<D>& at, const Vec<D>& velocity, real h) {
         enthalpies.push_back(h);
-        const Vec<D> kept = host_.domain.kept(at, host_.clamps);
+        const Vec<D> kept = host_.domain.kept(at, host_.corrections);
         for (std::size_t axis = 0; axis < D; ++axis) places[axis].push_back(kept[axis]), velocities[axis].push_back(velocity[axis]);
     });
     append(places, velocities, enthalpies);
@@ -87,14 +87,14 @@ std::size_t DeviceFluid<D>::most_particles() const {
     const auto& domain = host_.domain;
     real cells = 1;
     for (int axis = 0; axis < D; ++axis) cells *= std::round((domain.hi[axis] - domain.lo[axis]) / domain.spacing);
-    const real first = host_.count(), let_in = effects_.emitters.entered(effects_.end);
-    return static_cast<std::size_t>(std::min(first + let_in, std::max(first, 1.1 * cells)));
+    const real first = host_.count(), entering = effects_.emitters.entered(effects_.end);
+    return static_cast<std::size_t>(std::min(first + entering, std::max(first, 1.1 * cells)));
 }
 
 template std::string text_of(const std::vector<geometry::ShapePtr<2>>&);
 template std::string text_of(const std::vector<geometry::ShapePtr<3>>&);
-template void DeviceFluid<2>::let_in(real);
-template void DeviceFluid<3>::let_in(real);
+template void DeviceFluid<2>::add_inflow(real);
+template void DeviceFluid<3>::add_inflow(real);
 template void DeviceFluid<2>::cross_sides();
 template void DeviceFluid<3>::cross_sides();
 template std::size_t DeviceFluid<2>::most_particles() const;

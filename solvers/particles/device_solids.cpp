@@ -78,8 +78,8 @@ void DeviceFluid<D>::meet_solids() {
 
 template <int D>
 void DeviceFluid<D>::leave_solids() {
-    if (solid_) run("leave_solids", {count(), state_params, solid_series_, poses, clamps, a, near_solid, terms});
-    hold_places();
+    if (solid_) run("leave_solids", {count(), state_params, solid_series_, poses, corrections, a, near_solid, terms});
+    keep_frozen_positions();
 }
 
 template <int D>

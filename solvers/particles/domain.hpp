@@ -2,7 +2,7 @@
 #pragma once
 #include "geometry/sides.hpp"
 #include "geometry/solids.hpp"
-#include "particles/clamps.hpp"
+#include "particles/boundary_corrections.hpp"
 #include "particles/kernels.hpp"
 #include "particles/pairs.hpp"
 #include "particles/passes.hpp"
@@ -49,9 +49,9 @@ struct Domain {
         return x;
     }
     /// The same; records the boundary correction.
-    Vec<D> kept(const Vec<D>& x, Clamps& clamps) const {
+    Vec<D> kept(const Vec<D>& x, BoundaryCorrections& corrections) const {
         const Vec<D> y = kept(x);
-        if (const real by = norm(y - x); by > least_clamp * spacing) clamps.add(1, by);
+        if (const real by = norm(y - x); by > least_correction * spacing) corrections.add(1, by);
         return y;
     }
     Vec<D> wrapped(Vec<D> x) const;

@@ -1,6 +1,6 @@
 // The effects of every particle method. A new one is a struct here and a row of offers(): it is then available in scenes and acts on
 // threads. The other backends reject it by name until they support it (device_effects.cpp; reference_solver.cpp of the method).
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "particles/flow.hpp"
 #include "scene/gravity.hpp"
 
@@ -125,7 +125,7 @@ std::vector<Offer<D>> offers() {
 std::vector<scene::Variant> effect_schemas() {
     std::vector<scene::Variant> list;
     for (auto& offer : offers<2>()) list.push_back(std::move(offer.schema));
-    list.push_back(geometry::hand_schema());
+    list.push_back(geometry::brush_schema());
     return list;
 }
 

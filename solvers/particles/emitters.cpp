@@ -58,7 +58,7 @@ Emitters<D>::Emitters(const scene::Scene& scene, const Domain<D>& domain) {
 
 template <int D>
 void Emitters<D>::apply(Fluid<D>& fluid, real dt) {
-    emit(fluid.time, dt, [&](const Vec<D>& x, const Vec<D>& u, real h) { fluid.add(fluid.domain.kept(x, fluid.clamps), u, h); });
+    emit(fluid.time, dt, [&](const Vec<D>& x, const Vec<D>& u, real h) { fluid.add(fluid.domain.kept(x, fluid.corrections), u, h); });
     if (!sinks_.empty())
         fluid.remove_if([&](int i) {
             const Vec<D> x = fluid.position(i);

@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "core/slabs.hpp"
 #include "particles/beside_bodies.hpp"
-#include "particles/hand_over.hpp"
+#include "particles/particle_exchange.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -39,7 +39,7 @@ Fluid<D>::Fluid(const scene::Scene& scene) : domain(scene), rho0(scene.number("f
             for (int a = 0; a < D && ++at[a] == cells[a]; ++a) at[a] = 0;
         }
     };
-    shared = slabs().several() && !slabs().builds_alone();
+    shared = slabs().several() && !slabs().builds_serial();
     if (shared) {
         std::size_t all = 0, n = 0;
         each_place([&](const Vec<D>&) { ++all; });
@@ -108,24 +108,24 @@ void Fluid<D>::reorder(const std::vector<int>& order) {
 template <int D>
 void Fluid<D>::take_setting(const Fluid& from) {
     domain = from.domain, gravity = from.gravity, rho0 = from.rho0, mass = from.mass;
-    time = from.time, steps = from.steps, next_id = from.next_id, clamps = from.clamps;
+    time = from.time, steps = from.steps, next_id = from.next_id, corrections = from.corrections;
 }
 
 template <int D>
 void Fluid<D>::deal(Fluid& part) const {
     part.take_setting(*this);
     part.shared = true;
-    HandOver::Arrays own, sorted;
+    ParticleExchange::Arrays own, sorted;
     const_cast<Fluid&>(*this).for_each_array([&](std::vector<real>& f) { own.push_back(&f); });  // they are only read
     part.for_each_array([&](std::vector<real>& f) { sorted.push_back(&f); });
-    HandOver hands;
-    hands.clear();
+    ParticleExchange exchange;
+    exchange.clear();
     const int ranks = slabs().ranks();
     for (int i = 0; i < count(); ++i)
-        hands.move(std::min(ranks - 1, static_cast<int>(place[static_cast<std::size_t>(i)] * ranks / next_place)), i);
-    hands.trade(own, 0);
-    part.resize(hands.movers());
-    hands.take_movers(sorted, 0);
+        exchange.migrate(std::min(ranks - 1, static_cast<int>(place[static_cast<std::size_t>(i)] * ranks / next_place)), i);
+    exchange.run(own, 0);
+    part.resize(exchange.migrated());
+    exchange.unpack_migrated(sorted, 0);
     std::vector<int> order(part.id.size());
     std::iota(order.begin(), order.end(), 0);
     const auto stands = [&](int i) { return part.place[static_cast<std::size_t>(i)]; };
@@ -235,8 +235,8 @@ std::vector<Integral> Fluid<D>::integrals() const {
                     })});
     list.push_back({"max_speed", "m/s", max_speed()});
     list.push_back({"outside", "1", block_sum(n, [&](int i) { return domain.outside(position(i)) ? 1.0 : 0.0; })});
-    list.push_back({"clamped", "1", static_cast<real>(clamps.count)});
-    list.push_back({"clamp_depth", "1", clamps.farthest / domain.spacing});
+    list.push_back({"clamped", "1", static_cast<real>(corrections.count)});
+    list.push_back({"clamp_depth", "1", corrections.farthest / domain.spacing});
     list.push_back({"mean_height", "m", n ? block_sum(n, [&](int i) { return position(i)[1] - domain.lo[1]; }) / n : 0});
     list.push_back({"mean_density", "kg/m^3", n ? block_sum(n, [&](int i) { return density[static_cast<std::size_t>(i)]; }) / n : 0});
     return list;
@@ -273,7 +273,7 @@ void Fluid<D>::save(Checkpoint& to) const {
     }
     to.put("particles.clock", std::vector<real>{time, next_id});
     to.put_value("particles.steps", steps);
-    to.put_value("particles.clamps", clamps);
+    to.put_value("particles.clamps", corrections);
 }
 
 namespace {
@@ -325,7 +325,7 @@ void Fluid<D>::restore(const Checkpoint& from) {
     steps = from.get_value<std::int64_t>("particles.steps");
     Checkpoint::require_within("particles.steps", steps, 0, std::int64_t{1} << 53);
     require_whole(*this);
-    if (from.has("particles.clamps")) clamps = from.get_value<Clamps>("particles.clamps");
+    if (from.has("particles.clamps")) corrections = from.get_value<BoundaryCorrections>("particles.clamps");
     if (!domain.solids.empty()) domain.solids.set_time(time);
 }
 

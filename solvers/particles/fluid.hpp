@@ -30,7 +30,7 @@ struct Fluid {
     std::int64_t steps = 0;
     real next_id = 0;
     Vec<D> gravity{};  // for the potential energy
-    Clamps clamps;
+    BoundaryCorrections corrections;
 
     Fluid() = default;
     /// Creates particles in the scene's "liquid" shapes, on the lattice of the grid's cell centres, outside solids. In parallel each rank

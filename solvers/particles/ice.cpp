@@ -108,12 +108,12 @@ void Ice<D>::set_velocities(Fluid<D>& fluid, const Piece& piece) const {
 }
 
 template <int D>
-void Ice<D>::fly(real dt) {
+void Ice<D>::advance_free(real dt) {
     resting_ = dt == 0;
     for (Piece& piece : pieces_) {
         if (resting_ || piece.fixed) continue;
         piece.body.touches = true;  // moves with its velocity, which already includes gravity
-        piece.body.fly(dt, {});
+        piece.body.advance_free(dt, {});
         keep_in(piece);
     }
 }
@@ -199,7 +199,7 @@ real Ice<D>::leave_solids(Piece& piece) {
 }
 
 template <int D>
-void Ice<D>::arrive(Fluid<D>& fluid, real dt) {
+void Ice<D>::finish_motion(Fluid<D>& fluid, real dt) {
     each_place([&](int i, const Vec<D>& place) {
         Vec<D> x = place;
         for (int a = 0; a < D; ++a) x[a] = std::min(std::max(x[a], domain_.keep_lo[a]), domain_.keep_hi[a]);

@@ -33,7 +33,7 @@ public:
 
     // The parts of a step
     /// Free motion of the pieces, with contacts at walls and solids. dt = 0: they are at rest in the whole step.
-    void fly(real dt);
+    void advance_free(real dt);
     /// After an iteration has moved particles, moved(i, place) from the position given by their pieces: moves each piece by the total.
     template <class Moved>
     void follow(Moved&& moved) {
@@ -62,7 +62,7 @@ public:
         }
     }
     /// Sets final positions and velocities of the pieces: their displacement beyond free motion was a velocity times `dt`.
-    void arrive(Fluid<D>& fluid, real dt);
+    void finish_motion(Fluid<D>& fluid, real dt);
 
     std::size_t bytes() const;
 

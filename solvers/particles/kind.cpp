@@ -26,10 +26,10 @@ scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::
     return own;
 }
 
-void refuse_over_ranks(const scene::Scene& scene) {
+void refuse_in_parallel(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (heat_is_named(scene)) scene::one_process_only(scene, "substance", "heating of a substance is");
-    scene::refuse_hand(scene);
+    scene::refuse_brush(scene);
     if (backend_of(scene).kind != backend::Choice::Kind::threads) scene::one_process_only(scene, "scheme.backend", "this backend is");
 }
 

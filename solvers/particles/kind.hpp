@@ -10,7 +10,7 @@ namespace weir::particles {
 /// own: the method's name, its "scheme" and effects; in_initial: its keys of "initial"; plain: fields and passes.
 scene::SolverSchema schema_of(scene::SolverSchema own, const std::vector<scene::Key>& in_initial);
 /// Rejects keys that are supported in one process only.
-void refuse_over_ranks(const scene::Scene& scene);
+void refuse_in_parallel(const scene::Scene& scene);
 scene::PlainStep plain_step(std::vector<std::string> more_fields, std::vector<std::string> passes);
 
 template <template <int> class On>

@@ -113,7 +113,7 @@ void Migration::find_cut(const CellGrid& grid) {
 void Migration::find_holders(const Coordinates& x, int count, const Frame& frame, real radius) {
     const int self = slabs().rank();
     const Images images(frame, cells_, box_, radius);
-    hands_.clear();
+    exchange_.clear();
     gone_.clear();
     int first = cut_.begin(self), last = cut_.end(self);  // own cells that no other rank reads
     for (int r = 0; r < cut_.ranks(); ++r) {
@@ -130,32 +130,32 @@ void Migration::find_holders(const Coordinates& x, int count, const Frame& frame
         image_cells_.clear();
         if (repeats) images.list({x[0][i], x[1][i], x[2] ? x[2][i] : 0}, image_cells_);
         const int owner = cut_.owner(cell);
-        if (owner != self) hands_.move(owner, i), gone_.push_back(i);
+        if (owner != self) exchange_.migrate(owner, i), gone_.push_back(i);
         for (int r = 0; r < cut_.ranks(); ++r) {
             if (r == owner) continue;
             const auto read = [&](int c) { return cut_.reads(r, c); };
-            if (read(cell) || std::any_of(image_cells_.begin(), image_cells_.end(), read)) hands_.show(r, i);
+            if (read(cell) || std::any_of(image_cells_.begin(), image_cells_.end(), read)) exchange_.copy_as_ghost(r, i);
         }
     }
 }
 
 /// Moves the last particles to the entries of those that have left.
-void Migration::rearrange(const HandOver::Arrays& arrays, std::size_t read) {
-    const std::size_t stay = arrays[0]->size() - gone_.size(), own = stay + static_cast<std::size_t>(hands_.movers()),
-                      all = own + static_cast<std::size_t>(hands_.guests());
+void Migration::rearrange(const ParticleExchange::Arrays& arrays, std::size_t read) {
+    const std::size_t stay = arrays[0]->size() - gone_.size(), own = stay + static_cast<std::size_t>(exchange_.migrated()),
+                      all = own + static_cast<std::size_t>(exchange_.ghosts());
     for (auto* array : arrays) {
         for (auto i = gone_.rbegin(); i != gone_.rend(); ++i) (*array)[static_cast<std::size_t>(*i)] = array->back(), array->pop_back();
         if (array->capacity() < all) array->reserve(all + all / 16);
         array->resize(all);
     }
-    hands_.take_movers(arrays, stay);
-    hands_.take_guests(arrays, read, own);
+    exchange_.unpack_migrated(arrays, stay);
+    exchange_.unpack_ghosts(arrays, read, own);
     if (!slabs().poisons()) return;
     for (std::size_t a = read; a < arrays.size(); ++a)
         std::fill(arrays[a]->begin() + static_cast<std::ptrdiff_t>(own), arrays[a]->end(), std::numeric_limits<real>::quiet_NaN());
 }
 
-void Migration::apply(const Frame& frame, real radius, int dim, const HandOver::Arrays& arrays, std::size_t read) {
+void Migration::apply(const Frame& frame, real radius, int dim, const ParticleExchange::Arrays& arrays, std::size_t read) {
     Coordinates x{nullptr, nullptr, nullptr};
     for (std::size_t a = 0; a < static_cast<std::size_t>(dim); ++a) x[a] = arrays[a]->data();
     const int count = static_cast<int>(arrays[0]->size());
@@ -165,9 +165,9 @@ void Migration::apply(const Frame& frame, real radius, int dim, const HandOver::
     cells_.list_cells(x, count, cell_);
     find_cut(grid);
     find_holders(x, count, frame, radius);
-    hands_.trade(arrays, read);
+    exchange_.run(arrays, read);
     rearrange(arrays, read);
-    for (int r = 0; r < cut_.ranks(); ++r) counts_[static_cast<std::size_t>(r)] += hands_.gain(r);
+    for (int r = 0; r < cut_.ranks(); ++r) counts_[static_cast<std::size_t>(r)] += exchange_.gain(r);
 }
 
 int Migration::before() const { return std::accumulate(counts_.begin(), counts_.begin() + slabs().rank(), 0); }
@@ -178,6 +178,6 @@ void Migration::balance(real most) {
         if (count > (1 + most) * total_ / static_cast<real>(counts_.size()) + few) recut();
 }
 
-std::size_t Migration::bytes() const { return cells_.bytes() + cell_.capacity() * sizeof(int) + hands_.bytes(); }
+std::size_t Migration::bytes() const { return cells_.bytes() + cell_.capacity() * sizeof(int) + exchange_.bytes(); }
 
 }  // namespace weir::particles

@@ -3,7 +3,7 @@
 // particles. The partition is kept until a rank has many more particles than its share.
 #pragma once
 #include "particles/frame.hpp"
-#include "particles/hand_over.hpp"
+#include "particles/particle_exchange.hpp"
 #include "particles/shares.hpp"
 
 namespace weir::particles {
@@ -21,7 +21,7 @@ public:
     /// Migrates. Afterwards the entries of `arrays` are this rank's own particles, followed by its ghost particles, for which only the
     /// first `read` arrays are valid. The first `dim` arrays are the coordinates that define cells. radius: of the pair search [m]. Throws
     /// NumericalFailure on all ranks where a coordinate on any rank is not finite.
-    void apply(const Frame& frame, real radius, int dim, const HandOver::Arrays& arrays, std::size_t read);
+    void apply(const Frame& frame, real radius, int dim, const ParticleExchange::Arrays& arrays, std::size_t read);
     Held held(const std::vector<real>& place) const { return {box_, total_, &cut_, place.data()}; }
     int own() const { return counts_.empty() ? 0 : counts_[static_cast<std::size_t>(slabs().rank())]; }
     int total() const { return total_; }
@@ -37,7 +37,7 @@ private:
     void find_cut(const CellGrid& grid);
     void choose_cut_points(const CellGrid& grid);
     void find_holders(const Coordinates& x, int count, const Frame& frame, real radius);
-    void rearrange(const HandOver::Arrays& arrays, std::size_t read);
+    void rearrange(const ParticleExchange::Arrays& arrays, std::size_t read);
 
     CellSort cells_;
     std::vector<int> cell_;  // of own particles before migration
@@ -46,7 +46,7 @@ private:
     std::vector<int> counts_;                      // of each rank's own particles
     std::vector<std::array<real, 3>> cut_points_;  // in the first cell of each rank except rank 0
     CellCut cut_;
-    HandOver hands_;
+    ParticleExchange exchange_;
     std::vector<int> gone_;
     std::vector<int> image_cells_;  // scratch, of one particle
 };

@@ -37,7 +37,7 @@ inline void store_numbers(float* to, int first, int count, vf value) {
 inline vf kept(vf x, const WallParams* w, int axis) { return lower(higher(x, broadcast(w->keep_lo[axis])), broadcast(w->keep_hi[axis])); }
 
 /// Counts the lanes corrected by walls. Squares of nonnegative floats are ordered like their bits.
-inline void tally_clamps(ClampTally& tally, vf distance2, int begin, int end, const int* order, int particles) {
+inline void tally_corrections(CorrectionTally& tally, vf distance2, int begin, int end, const int* order, int particles) {
     if (!any_below(-distance2, -tally.least2)) return;
     long long times = 0;
     float farthest2 = 0;

@@ -9,7 +9,7 @@ namespace weir::particles {
 
 namespace {
 
-constexpr float not_brought = std::numeric_limits<float>::quiet_NaN();
+constexpr float stale_value = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -114,7 +114,7 @@ void Pairs::place(const Coordinates& all) {
     fit(a_, 4);
     fit(b_, 4);
     for (auto& axis : axis_) fit(axis, 1);
-    if (slabs().poisons()) std::fill(a_.begin(), a_.end(), not_brought), std::fill(axis_[0].begin(), axis_[0].end(), not_brought);
+    if (slabs().poisons()) std::fill(a_.begin(), a_.end(), stale_value), std::fill(axis_[0].begin(), axis_[0].end(), stale_value);
     each_anywhere([&](int k) {
         const int i = cells_.order()[static_cast<std::size_t>(k)];
         owner_[static_cast<std::size_t>(k)] = i < particles_ ? i : image_owner_[static_cast<std::size_t>(i - particles_)];
@@ -143,9 +143,9 @@ void Pairs::link_images() {
 }
 
 void Pairs::refresh(float* four, bool moves) {
-    shares_.trade<float>(
+    shares_.exchange<float>(
         4, [&](int k, float* to) { std::copy_n(four + 4 * k, 4, to); },
-        [&](int k, const float* from) { std::copy_n(from, 4, four + 4 * k); }, [&](int k) { std::fill_n(four + 4 * k, 4, not_brought); });
+        [&](int k, const float* from) { std::copy_n(from, 4, four + 4 * k); }, [&](int k) { std::fill_n(four + 4 * k, 4, stale_value); });
     for (const auto& [image, from, which] : links_)
         for (int c = 0; c < 4; ++c) {
             const float shift = moves && c < 3 ? image_shift_[static_cast<std::size_t>(which)][static_cast<std::size_t>(c)] : 0;
@@ -154,7 +154,7 @@ void Pairs::refresh(float* four, bool moves) {
 }
 
 void Pairs::share(StateArrays state) {
-    shares_.trade<real>(
+    shares_.exchange<real>(
         static_cast<int>(state.size()),
         [&](int k, real* to) {
             for (const auto* f : state) *to++ = (*f)[static_cast<std::size_t>(owner(k))];
@@ -166,10 +166,10 @@ void Pairs::share(StateArrays state) {
 }
 
 void Pairs::share(std::vector<float>& sorted) {
-    shares_.trade<float>(
+    shares_.exchange<float>(
         1, [&](int k, float* to) { *to = sorted[static_cast<std::size_t>(k)]; },
         [&](int k, const float* from) { sorted[static_cast<std::size_t>(k)] = *from; },
-        [&](int k) { sorted[static_cast<std::size_t>(k)] = not_brought; });
+        [&](int k) { sorted[static_cast<std::size_t>(k)] = stale_value; });
 }
 
 real Pairs::largest(real own) const { return shares_.several() ? detail::largest_of(of_ranks(own), slabs().ranks()) : own; }

@@ -49,7 +49,7 @@ struct ListJob {
 };
 
 /// Number of boundary corrections, and the square of the largest distance; squares below least2 are rounding.
-struct ClampTally {
+struct CorrectionTally {
     long long count = 0;
     float farthest2 = 0, least2 = 0;
 };
@@ -67,8 +67,8 @@ struct PbfPass {
     float* multiplier = nullptr;   // sum of lambda over the iterations; nullptr: not stored
     const std::size_t* first = nullptr;
     const int* rows = nullptr;
-    ClampTally* clamps = nullptr;  // of the corrections
-    const int* order = nullptr;    // sorted particles from `particles` on are images, which are not counted
+    CorrectionTally* corrections = nullptr;  // of the corrections
+    const int* order = nullptr;              // sorted particles from `particles` on are images, which are not counted
     int particles = 0;
     int own_begin = 0, own_end = 0;  // only these particles are counted
 };

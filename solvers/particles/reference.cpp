@@ -158,7 +158,8 @@ std::vector<double> ReferencePbf::lambdas(const std::vector<Point>& x, std::vect
     return lambda;
 }
 
-std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const std::vector<double>& lambda, Clamps* clamps) const {
+std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const std::vector<double>& lambda,
+                                           BoundaryCorrections* corrections) const {
     std::vector<Point> to = x;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wall = walls_at(*this, x[i], i);
@@ -174,7 +175,7 @@ std::vector<Point> ReferencePbf::corrected(const std::vector<Point>& x, const st
             to[i][a] = std::clamp(free, walls.keep_lo[a], walls.keep_hi[a]);
             back2 += (to[i][a] - free) * (to[i][a] - free);
         }
-        if (clamps && back2 > least_back * least_back) clamps->add(1, std::sqrt(back2));
+        if (corrections && back2 > least_back * least_back) corrections->add(1, std::sqrt(back2));
     }
     return to;
 }

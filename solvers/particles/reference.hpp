@@ -44,7 +44,8 @@ struct ReferencePbf : ReferencePairs {
     /// The increments of lambda in this iteration. multiplier: the sums so far, updated; nullptr: every iteration starts from zero.
     std::vector<double> lambdas(const std::vector<Point>& x, std::vector<double>* multiplier = nullptr) const;
     /// x + correction, kept inside the walls; corrections by walls of more than least_back are counted.
-    std::vector<Point> corrected(const std::vector<Point>& x, const std::vector<double>& lambda, Clamps* clamps = nullptr) const;
+    std::vector<Point> corrected(const std::vector<Point>& x, const std::vector<double>& lambda,
+                                 BoundaryCorrections* corrections = nullptr) const;
 };
 
 /// The pair physics of SPH over all pairs.

@@ -66,7 +66,7 @@ public:
     /// Halo exchange: pack(k, numbers) writes the `width` numbers of a particle, unpack(k, numbers) reads those of a ghost particle. In
     /// tests with poisoned halos, spoil(k) sets stale ones to NaN.
     template <class T, class Pack, class Unpack, class Spoil>
-    void trade(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil);
+    void exchange(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil);
     /// spoil(k) for all entries without valid values here.
     template <class Spoil>
     void poison(Spoil&& spoil) const;
@@ -86,24 +86,24 @@ private:
     std::vector<int> sends_, gets_;  // rank by rank
     std::vector<std::size_t> send_begins_, get_begins_;
     std::vector<unsigned char> sent_, got_;  // message bytes
-    std::vector<Parcel> parcels_;
+    std::vector<Message> messages_;
 };
 
 template <class T, class Pack, class Unpack, class Spoil>
-void Shares::trade(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil) {
+void Shares::exchange(int width, Pack&& pack, Unpack&& unpack, Spoil&& spoil) {
     if (!several()) return;
     const std::size_t numbers = static_cast<std::size_t>(width), each = numbers * sizeof(T);
     sent_.resize(sends_.size() * each);
     got_.resize(gets_.size() * each);
     T* to = reinterpret_cast<T*>(sent_.data());
     for (const int k : sends_) pack(k, to), to += numbers;
-    parcels_.clear();
+    messages_.clear();
     for (int peer = 0; peer < cut_.ranks(); ++peer) {
         const auto r = static_cast<std::size_t>(peer);
-        parcels_.push_back({peer, sent_.data() + each * send_begins_[r], each * sent_to(peer).size(), got_.data() + each * get_begins_[r],
-                            each * got_from(peer).size()});
+        messages_.push_back({peer, sent_.data() + each * send_begins_[r], each * sent_to(peer).size(), got_.data() + each * get_begins_[r],
+                             each * got_from(peer).size()});
     }
-    slabs().trade(parcels_);
+    slabs().exchange(messages_);
     const T* from = reinterpret_cast<const T*>(got_.data());
     for (const int k : gets_) unpack(k, from), from += numbers;
     if (slabs().poisons()) poison(spoil);

@@ -72,13 +72,13 @@ void meet_bodies(const Domain<D>& domain, const plain::WallParams& walls, const 
 }
 
 template <int D>
-void SolidTerms<D>::push_out(const Pairs& pairs, float* positions, Clamps& clamps) const {
+void SolidTerms<D>::push_out(const Pairs& pairs, float* positions, BoundaryCorrections& corrections) const {
     if (domain_.solids.empty()) return;
     parallel_for(0, static_cast<int>(near_.size()), [&](int i) {
         const int k = near_[static_cast<std::size_t>(i)];
         const Vec<D> x = world(positions + 4 * k);
         if (domain_.solids.distance(x) >= domain_.margin) return;
-        const Vec<D> y = pairs.is_image(k) ? domain_.kept(x) : domain_.kept(x, clamps);
+        const Vec<D> y = pairs.is_image(k) ? domain_.kept(x) : domain_.kept(x, corrections);
         for (int a = 0; a < D; ++a) positions[4 * k + a] = pairs.local(y[a], a);
     });
 }

@@ -44,7 +44,7 @@ public:
         meet_bodies(domain_, walls_, near_, positions, terms_.data(), to);
     }
     /// Moves marked particles out of solids.
-    void push_out(const Pairs& pairs, float* positions, Clamps& clamps) const;
+    void push_out(const Pairs& pairs, float* positions, BoundaryCorrections& corrections) const;
 
 private:
     Vec<D> world(const float* four) const { return world_of(domain_, four); }

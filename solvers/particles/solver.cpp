@@ -1,7 +1,7 @@
 #include "particles/solver.hpp"
 
 #include "core/error.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 
 #include <algorithm>
 
@@ -39,7 +39,7 @@ std::vector<Integral> ParticleSolver<D>::integrals() const {
     const auto neighbours = neighbour_counts();
     list.push_back({"mean_neighbours", "1", neighbours.mean});
     list.push_back({"max_neighbours", "1", neighbours.most});
-    if (const Hand* hand = this->hand()) geometry::sum_up(*hand, D, list);
+    if (const BrushForcing* forcing = this->brush()) geometry::sum_up(*forcing, D, list);
     if (heat_) heat_->place(state());
     sum_up(list);
     if (heat_) heat_->sum_up(state(), list);
@@ -66,24 +66,24 @@ void ParticleSolver<D>::restore(const Checkpoint& from) {
 
 /// Each rank has its part.
 template <int D>
-class HostSolver<D>::Brought final : public Solver::Brought {
+class HostSolver<D>::DistributedView final : public Solver::DistributedView {
 public:
-    explicit Brought(const HostSolver& solver) : solver_(solver) {
+    explicit DistributedView(const HostSolver& solver) : solver_(solver) {
         solver_.whole_ = std::make_unique<Fluid<D>>();
         solver.fluid_.deal(*solver_.whole_);
         solver_.in_parts_ = true;
     }
-    ~Brought() override { solver_.whole_.reset(), solver_.in_parts_ = false; }
-    Brought(const Brought&) = delete;
-    Brought& operator=(const Brought&) = delete;
+    ~DistributedView() override { solver_.whole_.reset(), solver_.in_parts_ = false; }
+    DistributedView(const DistributedView&) = delete;
+    DistributedView& operator=(const DistributedView&) = delete;
 
 private:
     const HostSolver& solver_;
 };
 
 template <int D>
-std::unique_ptr<Solver::Brought> HostSolver<D>::show_in_parts() const {
-    return fluid_.shared ? std::make_unique<Brought>(*this) : nullptr;
+std::unique_ptr<Solver::DistributedView> HostSolver<D>::distributed_view() const {
+    return fluid_.shared ? std::make_unique<DistributedView>(*this) : nullptr;
 }
 
 template <int D>
@@ -100,14 +100,14 @@ template <int D>
 void HostSolver<D>::save_state(Checkpoint& to) const {
     fluid_.save(to);
     emitters_.save(to);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     to.put_value(std::string(this->method()) + ".speed", speed_);
 }
 template <int D>
 void HostSolver<D>::restore_state(const Checkpoint& from) {
     fluid_.restore(from);
     emitters_.restore(from);
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     if (this->bodies_) this->bodies_->restore(from, fluid_.domain);
     const std::string key = std::string(this->method()) + ".speed";
     speed_ = from.has(key) ? from.get_value<real>(key) : not_applicable;  // devices do not store it
@@ -122,14 +122,14 @@ void HostSolver<D>::take_heat(const scene::Scene& scene) {
 }
 
 template <int D>
-void HostSolver<D>::hold() {
+void HostSolver<D>::stop_frozen() {
     if (!this->heat_ || this->heat_->count_frozen(fluid_) == 0) return;
     if (this->ice_) return this->ice_->find(fluid_);
-    hold_again();
+    stop_frozen_again();
 }
 
 template <int D>
-void HostSolver<D>::hold_again() {
+void HostSolver<D>::stop_frozen_again() {
     if (!this->heat_ || this->heat_->frozen() == 0) return;
     if (this->ice_) return this->ice_->move_as_one(fluid_);
     parallel_for(0, fluid_.count(), [&](int i) {

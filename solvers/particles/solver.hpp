@@ -95,9 +95,9 @@ public:
     }
     real time() const final { return fluid_.time; }
     Fluid<D>& fluid() { return fluid_; }
-    std::unique_ptr<Solver::Brought> show_in_parts() const final;
+    std::unique_ptr<Solver::DistributedView> distributed_view() const final;
     bool checks_itself() const final { return fluid_.shared; }
-    Hand* hand() const final { return hand_.get(); }
+    BrushForcing* brush() const final { return brush_forcing_.get(); }
 
 protected:
     explicit HostSolver(Fluid<D>&& start) : fluid_(std::move(start)) { this->bodies_ = BodiesInLiquid<D>::make(fluid_); }
@@ -114,10 +114,10 @@ protected:
     void restore_state(const Checkpoint& from) final;
     void take_heat(const scene::Scene& scene);
     /// Frozen particles get zero velocity, or that of their piece, which is found here; other changes of their velocities are discarded.
-    void hold();
+    void stop_frozen();
     /// The same where no particle has melted or frozen since.
-    void hold_again();
-    /// Returns whether particle i of the state is frozen and fixed, if hold() found any.
+    void stop_frozen_again();
+    /// Returns whether particle i of the state is frozen and fixed, if stop_frozen() found any.
     bool held(int i) const {
         if (!this->heat_ || this->heat_->frozen() == 0) return false;
         return this->ice_ ? this->ice_->fixed(i) : this->heat_->frozen(fluid_.enthalpy[static_cast<std::size_t>(i)]);
@@ -134,11 +134,11 @@ protected:
 
     Fluid<D> fluid_;
     Emitters<D> emitters_;
-    std::shared_ptr<Hand> hand_;   // nullptr where the scene has none
-    real speed_ = not_applicable;  // maximum of particles and bodies after the last step; unknown before the first [m/s]
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
+    real speed_ = not_applicable;                  // maximum of particles and bodies after the last step; unknown before the first [m/s]
 
 private:
-    class Brought;
+    class DistributedView;
     mutable std::unique_ptr<Fluid<D>> whole_;  // as long as it is in use
 };
 

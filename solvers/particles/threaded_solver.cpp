@@ -24,12 +24,12 @@ ThreadedSolver<D>::ThreadedSolver(const Scheme& scheme, const scene::Scene& scen
     this->emitters_ = Emitters<D>(scene, fluid_.domain);
     add_effects(scene, effects_);
     this->take_heat(scene);
-    this->hand_ = geometry::make_hand(scene, geometry::kinds_of_hand(this->heat_ != nullptr, this->bodies_ != nullptr));
-    if (!this->hand_) return;
-    if (this->bodies_) this->bodies_->follow(this->hand_, scene);
-    auto hand = std::make_unique<HandOnParticles<D>>(this->hand_);
-    sources_ = hand.get();
-    effects_.add("hand", std::move(hand));
+    this->brush_forcing_ = geometry::make_brush(scene, geometry::kinds_of_brush(this->heat_ != nullptr, this->bodies_ != nullptr));
+    if (!this->brush_forcing_) return;
+    if (this->bodies_) this->bodies_->follow(this->brush_forcing_, scene);
+    auto forcing = std::make_unique<BrushOnParticles<D>>(this->brush_forcing_);
+    sources_ = forcing.get();
+    effects_.add("hand", std::move(forcing));
 }
 
 template <int D>
@@ -48,22 +48,22 @@ void ThreadedSolver<D>::find_pairs(std::array<std::vector<real>, D>& at, real ra
 }
 
 template <int D>
-void ThreadedSolver<D>::dismiss() {
+void ThreadedSolver<D>::drop_ghosts() {
     if (fluid_.shared) fluid_.resize(migration_.own());
 }
 
 template <int D>
-void ThreadedSolver<D>::add_clamps(const Clamps& rank) {
-    fluid_.clamps.add(rank.count - clamps_before_.count, rank.farthest);
+void ThreadedSolver<D>::add_corrections(const BoundaryCorrections& rank) {
+    fluid_.corrections.add(rank.count - corrections_before_.count, rank.farthest);
 }
 
 template <int D>
-void ThreadedSolver<D>::sum_up_clamps() {
+void ThreadedSolver<D>::sum_up_corrections() {
     if (!fluid_.shared) return;
-    const std::vector<Clamps> each = of_ranks(fluid_.clamps);
-    fluid_.clamps = clamps_before_;
-    for (const Clamps& rank : each) add_clamps(rank);
-    clamps_before_ = fluid_.clamps;
+    const std::vector<BoundaryCorrections> each = of_ranks(fluid_.corrections);
+    fluid_.corrections = corrections_before_;
+    for (const BoundaryCorrections& rank : each) add_corrections(rank);
+    corrections_before_ = fluid_.corrections;
 }
 
 template <int D>
@@ -81,25 +81,25 @@ typename ThreadedSolver<D>::StepEnd ThreadedSolver<D>::end_step(const SumAndMost
     const int before = fluid_.count();
     fluid_.cross_sides();
     fastest_ = fluid_.count() == before ? end.speed : fluid_.fastest();
-    if (fluid_.shared) tell_of_all(end, excess);
+    if (fluid_.shared) reduce_over_ranks(end, excess);
     return end;
 }
 
 /// Collective check: one message per step.
 template <int D>
-void ThreadedSolver<D>::tell_of_all(StepEnd& end, const SumAndMost& excess) {
-    struct Told {
+void ThreadedSolver<D>::reduce_over_ranks(StepEnd& end, const SumAndMost& excess) {
+    struct RankReport {
         SumAndMost excess;
-        Clamps clamps;
+        BoundaryCorrections corrections;
         real speed, fastest, acceleration;
         typename Fluid<D>::Quantity broken;
     };
-    const std::vector<Told> ranks = of_ranks(Told{excess, fluid_.clamps, end.speed, fastest_, end.acceleration, broken_});
-    fluid_.clamps = clamps_before_;
+    const std::vector<RankReport> ranks = of_ranks(RankReport{excess, fluid_.corrections, end.speed, fastest_, end.acceleration, broken_});
+    fluid_.corrections = corrections_before_;
     SumAndMost all;
-    for (const Told& rank : ranks) {
+    for (const RankReport& rank : ranks) {
         all.add(rank.excess);
-        add_clamps(rank.clamps);
+        add_corrections(rank.corrections);
         end.speed = std::max(end.speed, rank.speed), fastest_ = std::max(fastest_, rank.fastest);
         end.acceleration = std::max(end.acceleration, rank.acceleration);
         broken_ = std::max(broken_, rank.broken);

@@ -2,8 +2,8 @@
 // the effects of every method (flow.hpp).
 #pragma once
 #include "core/effects.hpp"
+#include "particles/brush.hpp"
 #include "particles/flow.hpp"
-#include "particles/hand.hpp"
 #include "particles/pairs.hpp"
 #include "particles/scheme.hpp"
 #include "particles/solid_terms.hpp"
@@ -26,16 +26,16 @@ protected:
     /// Bytes of the method's own arrays.
     virtual std::size_t own_bytes() const = 0;
     /// Emitters, sinks and interactive forcing, before a step.
-    void pour_and_drain(real dt) {
+    void apply_sources_and_sinks(real dt) {
         this->forget_whole();
         this->emitters_.apply(fluid_, dt);
-        if (sources_) sources_->pour_and_drain(fluid_);
-        clamps_before_ = fluid_.clamps;  // emitters are replicated on all ranks
+        if (sources_) sources_->apply_sources_and_sinks(fluid_);
+        corrections_before_ = fluid_.corrections;  // emitters are replicated on all ranks
     }
-    /// Finds the pairs at these positions, closer than the radius [m]. In parallel particles migrate first, and until dismiss() the state
-    /// also contains ghost particles, for which the positions and these arrays of the state are valid.
+    /// Finds the pairs at these positions, closer than the radius [m]. In parallel particles migrate first, and until drop_ghosts() the
+    /// state also contains ghost particles, for which the positions and these arrays of the state are valid.
     void find_pairs(std::array<std::vector<real>, D>& at, real radius, std::initializer_list<std::vector<real>*> read);
-    void dismiss();
+    void drop_ghosts();
     /// Number of state particles that this rank owns.
     int own() const { return fluid_.shared ? migration_.own() : fluid_.count(); }
     /// Ends a step: counts it, reorders the state at intervals, wraps or removes particles beyond sides. excess: of own particles;
@@ -46,7 +46,7 @@ protected:
     };
     StepEnd end_step(const SumAndMost& excess, real acceleration);
     /// In parallel, sums the boundary corrections over the ranks.
-    void sum_up_clamps();
+    void sum_up_corrections();
     real speed() const final;
     /// Conduction at the positions of the step's passes, which are those of the pairs.
     void conduct(real dt) final;
@@ -68,7 +68,7 @@ protected:
     SolidTerms<D> solids_;
     Flow<D> flow_;
     Effects<Flow<D>> effects_;
-    HandOnParticles<D>* sources_ = nullptr;  // one of the effects
+    BrushOnParticles<D>* sources_ = nullptr;  // one of the effects
 
 private:
     void load_theta();
@@ -77,12 +77,12 @@ private:
     bool warmed_ = false;                   // the first rates of the step are available
     std::vector<real> warming_, by_walls_;  // of sorted particles [J/(kg s)]
     std::vector<float> rest_;
-    void tell_of_all(StepEnd& end, const SumAndMost& excess);
-    void add_clamps(const Clamps& rank);
+    void reduce_over_ranks(StepEnd& end, const SumAndMost& excess);
+    void add_corrections(const BoundaryCorrections& rank);
 
     Migration migration_;
-    HandOver::Arrays arrays_;
-    Clamps clamps_before_;
+    ParticleExchange::Arrays arrays_;
+    BoundaryCorrections corrections_before_;
     typename Fluid<D>::Quantity broken_{};
     mutable real fastest_ = not_applicable;  // in parallel: over all particles now; unknown after a restart [m/s]
 };

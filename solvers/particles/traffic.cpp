@@ -1,7 +1,7 @@
 #include "particles/traffic.hpp"
 
+#include "geometry/liquid_fraction.hpp"
 #include "geometry/sides.hpp"
-#include "geometry/wet_part.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ int wet_planes(const scene::Scene& scene) {
     constexpr int looks = 64;
     const int planes = scene.index<D>("grid.cells")[D - 1], count = std::min(planes, looks);
     int wet = 0;
-    for (int k = 0; k < count; ++k) wet += geometry::wet_part_of_plane<D>(scene, k * planes / count) > 0;
+    for (int k = 0; k < count; ++k) wet += geometry::liquid_fraction_of_plane<D>(scene, k * planes / count) > 0;
     return std::max(1, wet * planes / count);
 }
 
@@ -31,7 +31,7 @@ SharedParticles shared_particles(const scene::Scene& scene, const RankOf& of, co
 
 void tally_halos(const SharedParticles& particles, const RankOf& of, std::size_t bytes, std::int64_t times, Tally& tally) {
     const int peers = std::min(of.ranks - 1, of.rank > 0 && of.rank + 1 < of.ranks ? 2 : 1);
-    tally.parcel(particles.beside * bytes, times * peers);
+    tally.message(particles.beside * bytes, times * peers);
 }
 
 void tally_migration(const SharedParticles& particles, const RankOf& of, int numbers, Tally& tally) {

@@ -45,7 +45,7 @@ DevicePbfSolver<D>::DevicePbfSolver(const Options& options, const particles::Flu
 /// The numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport DevicePbfSolver<D>::step(real dt) {
-    fluid_.let_in(dt);
+    fluid_.add_inflow(dt);
     if (bodies_) start_bodies(dt);
     fluid_.predict(dt);  //  1-4
     if (bodies_) push_bodies_ahead();
@@ -65,7 +65,7 @@ StepReport DevicePbfSolver<D>::step(real dt) {
     if (bodies_) bodies_->end(fluid_.domain(), dt, slow), carried_dt_ = 0;
     last_dt_ = dt;
     fluid_.finish(dt);  // 22
-    fluid_.hold_again();
+    fluid_.stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     const real speed = this->find_speed();
     const Reduced c = find_compression();
@@ -76,7 +76,7 @@ StepReport DevicePbfSolver<D>::step(real dt) {
 }
 
 template <int D>
-void DevicePbfSolver<D>::stay() {
+void DevicePbfSolver<D>::predict_at_rest() {
     fluid_.predict(0);
     fluid_.find_neighbours(fluid_.x_star);
     fluid_.expand();
@@ -111,7 +111,7 @@ void DevicePbfSolver<D>::find_lambdas() {
 template <int D>
 void DevicePbfSolver<D>::correct() {
     const auto& f = fluid_;
-    fluid_.run("correct", {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.rests, f.clamps, f.b,
+    fluid_.run("correct", {f.count(), f.stride(), f.state_params, f.kernel_params, f.wall_params, f.terms, f.rests, f.corrections, f.b,
                            f.neighbours, f.list, f.a});
     if (carried_dt_ > 0)
         push_bodies();
@@ -173,7 +173,7 @@ void DevicePbfSolver<D>::update(real dt, real slow) {
     fluid_.run("densities", {f.count(), f.stride(), f.kernel_params, f.wall_params, f.terms, f.rests, f.a, f.neighbours, f.list, density_});
     fluid_.run("update", {f.count(), f.stride(), f.state_params, f.poses, dt, slow, f.rest_density(), f.order, f.a, f.x_star, density_,
                           multiplier_, f.x, f.v, f.density, f.carried});
-    if (dt > 0) fluid_.arrive(slow);
+    if (dt > 0) fluid_.finish_ice_motion(slow);
 }
 
 template <int D>

@@ -19,7 +19,7 @@ private:
     using Base::fluid_, Base::passes_, Base::options_, Base::step_, Base::last_dt_, Base::bodies_, Base::beside_;
     using typename Base::Memory, typename Base::Reduced;
 
-    void stay() override;
+    void predict_at_rest() override;
     void iterate_afresh() override;
     void warm_start(real dt);
     void find_lambdas();

@@ -104,7 +104,7 @@ scene::SolverKind kind() {
     return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"fluid.viscosity"}}, {}),
             particles::make_solver<PbfSolver, ReferencePbfSolver, DevicePbfSolver>,
             particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"}),
-            particles::refuse_over_ranks,
+            particles::refuse_in_parallel,
             scene::Shared::by_particles,
             {},
             {},

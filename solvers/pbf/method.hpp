@@ -55,7 +55,7 @@ protected:
     /// Compression of the densest particle.
     virtual real worst_compression() { return compression().worst; }
     /// x* = x, and the pairs there.
-    virtual void stay() = 0;
+    virtual void predict_at_rest() = 0;
     /// One iteration with zero initial multipliers.
     virtual void iterate_afresh() = 0;
     virtual void update(real dt, real slow) = 0;
@@ -72,7 +72,7 @@ void Pbf<Backend>::settle() {
     for (int i = 0; i < options_.settle; ++i) {
         if (i % settle_between_lists == 0) {
             if (i > 0 && worst_compression() <= settle_good_enough) break;
-            stay();
+            predict_at_rest();
         }
         iterate_afresh();
         if ((i + 1) % settle_between_lists == 0 || i + 1 == options_.settle) update(0, 0);

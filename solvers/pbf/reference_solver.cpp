@@ -34,7 +34,7 @@ template <int D>
 ReferencePbfSolver<D>::ReferencePbfSolver(const Options& options, Fluid<D> start, const scene::Scene* scene)
     : Base(options, std::move(start)) {
     reference_.p = pbf_params<particles::plain::PbfParams, D>(options_, fluid_.domain.spacing);
-    reference_.least_back = particles::least_clamp * fluid_.domain.spacing;
+    reference_.least_back = particles::least_correction * fluid_.domain.spacing;
     give_ = give_at_walls<D>(options_, fluid_.domain.spacing);
     if (scene) this->take(*scene, pbf::effects());
     this->settle();
@@ -59,7 +59,7 @@ StepReport ReferencePbfSolver<D>::step(real dt) {
         for (std::size_t i = 0; i < multiplier_.size(); ++i) fluid_.carried[i] = multiplier_[i] / (slow * slow);
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) bodies_->end(fluid_.domain, dt, slow), carried_dt_ = 0;
-    this->hold_again();
+    this->stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     last_dt_ = dt;
     const real speed = speed_ = this->speed();
@@ -83,12 +83,12 @@ void ReferencePbfSolver<D>::predict(real dt) {
         fluid_.time += dt;
         fluid_.domain.solids.set_time(fluid_.time);
         for (int i = 0; i < fluid_.count(); ++i) Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * fluid_.gravity);
-        this->hold();  // frozen particles
+        this->stop_frozen();  // frozen particles
         predicted_.clear(), x_star_.clear();
         for (int i = 0; i < fluid_.count(); ++i)
-            predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
+            predicted_.push_back(fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.corrections));
         if (this->ice_moves()) {
-            this->ice_->fly(dt);
+            this->ice_->advance_free(dt);
             this->ice_->each_place([&](int i, const Vec<D>& place) { predicted_[static_cast<std::size_t>(i)] = place; });
         }
         if (carried_dt_ > 0) push_bodies_ahead();
@@ -125,12 +125,12 @@ void ReferencePbfSolver<D>::find_lambdas() {
 template <int D>
 void ReferencePbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
-    x_star_ = reference_.corrected(x_star_, lambda_, &fluid_.clamps);
+    x_star_ = reference_.corrected(x_star_, lambda_, &fluid_.corrections);
     const Vec<D> centre = fluid_.domain.centre();
     if (carried_dt_ > 0)
         push_bodies();
     else if (!fluid_.domain.solids.empty())
-        for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x), fluid_.clamps) - centre);
+        for (Point& x : x_star_) x = particles::point_of(fluid_.domain.kept(centre + particles::vec_of<D>(x), fluid_.corrections) - centre);
     for (std::size_t i = 0; i < x_star_.size(); ++i)
         if (this->held(static_cast<int>(i))) x_star_[i] = particles::point_of(predicted_[i] - centre);
     if (!this->ice_moves()) return;
@@ -189,7 +189,7 @@ void ReferencePbfSolver<D>::push_bodies() {
     for (std::size_t i = 0; i < x_star_.size(); ++i) {
         const Vec<D> free = centre + particles::vec_of<D>(x_star_[i]);
         bodies_->push_out(fluid_.domain, static_cast<int>(i), free, carried_dt_);
-        x_star_[i] = particles::point_of(fluid_.domain.kept(free, fluid_.clamps) - centre);
+        x_star_[i] = particles::point_of(fluid_.domain.kept(free, fluid_.corrections) - centre);
     }
     if (meetings.empty()) return;
     bodies_->exchange(fluid_.domain, carried_dt_, false);
@@ -215,7 +215,7 @@ void ReferencePbfSolver<D>::update(real dt, real slow) {
         Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[at] = fluid_.rho0 * density_[at];
     }
-    if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
+    if (this->ice_moves() && dt > 0) this->ice_->finish_motion(fluid_, slow);
 }
 
 template <int D>

@@ -20,7 +20,7 @@ private:
     using Base::fluid_, Base::emitters_, Base::reference_, Base::passes_, Base::options_, Base::bodies_, Base::speed_, Base::step_,
         Base::last_dt_;
 
-    void stay() override { predict(0); }
+    void predict_at_rest() override { predict(0); }
     void iterate_afresh() override;
     void predict(real dt);
     void warm_start(real dt);

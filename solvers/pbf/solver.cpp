@@ -22,9 +22,9 @@ PbfSolver<D>::PbfSolver(const scene::Scene& scene) : Base(Options(scene), scene,
 /// The numbers at the right are the lines of Algorithm 1.
 template <int D>
 StepReport PbfSolver<D>::step(real dt) {
-    this->pour_and_drain(dt);
+    this->apply_sources_and_sinks(dt);
     effects_.apply(Stage::force, flow_, dt, passes_);
-    this->hold();  // frozen particles
+    this->stop_frozen();  // frozen particles
     if (bodies_) start_bodies(dt);
     predict(dt);        //  1-4
     find_neighbours();  //  5-7
@@ -42,8 +42,8 @@ StepReport PbfSolver<D>::step(real dt) {
     update(dt, slow);  // 20-21, 23-24
     if (bodies_) end_bodies(dt, slow);
     effects_.apply(Stage::finish, flow_, dt, passes_);  // 22
-    this->dismiss();
-    this->hold_again();
+    this->drop_ghosts();
+    this->stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     last_dt_ = dt;
     const auto end = this->end_step(excess(), 0);
@@ -52,8 +52,8 @@ StepReport PbfSolver<D>::step(real dt) {
 }
 
 template <int D>
-void PbfSolver<D>::stay() {
-    this->hold(), predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
+void PbfSolver<D>::predict_at_rest() {
+    this->stop_frozen(), predict(0), find_neighbours(), pairs_.fit(multiplier_, 1);
 }
 
 template <int D>
@@ -71,11 +71,11 @@ void PbfSolver<D>::predict(real dt) {
     if (!fluid_.domain.solids.empty()) fluid_.domain.solids.set_time(fluid_.time);
     for (auto& axis : x_star_) axis.resize(fluid_.id.size());
     parallel_for(0, fluid_.count(), [&](int i) {
-        particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.clamps));
+        particles::Fluid<D>::put(x_star_, i, fluid_.domain.kept(fluid_.position(i) + dt * fluid_.velocity(i), fluid_.corrections));
     });
     if (carried_dt_ > 0) push_bodies_ahead();
     if (!this->ice_moves()) return;
-    this->ice_->fly(dt);
+    this->ice_->advance_free(dt);
     this->ice_->each_place([&](int i, const Vec<D>& place) { particles::Fluid<D>::put(x_star_, i, place); });
 }
 
@@ -161,19 +161,19 @@ void PbfSolver<D>::correct() {
     const auto timed = passes_.time("correct");
     const auto& table = pairs_.table().pbf[static_cast<int>(options_.smoothing)];
     const auto run = options_.pressure_k > 0 ? table.correct_with_pressure : table.correct;
-    particles::ClampTally tally{.least2 = static_cast<float>(std::pow(particles::least_clamp * fluid_.domain.spacing, 2))};
+    particles::CorrectionTally tally{.least2 = static_cast<float>(std::pow(particles::least_correction * fluid_.domain.spacing, 2))};
     PbfPass job = pass(pairs_.b(), pairs_.a(), solids_.there());  // b has the values of a
-    job.clamps = &tally;
+    job.corrections = &tally;
     job.order = pairs_.cells().order().data();
     job.particles = pairs_.particles();
     job.own_begin = pairs_.shares().own().begin, job.own_end = pairs_.shares().own().end;
     pairs_.list().each_chunk([&](const ListChunk& chunk) { run(job, chunk); });
-    if (tally.count > 0) fluid_.clamps.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
+    if (tally.count > 0) fluid_.corrections.add(tally.count, std::sqrt(static_cast<real>(tally.farthest2)));
 }
 
 /// Frozen particles keep their position of the neighbour search, or move with their piece.
 template <int D>
-void PbfSolver<D>::hold_places() {
+void PbfSolver<D>::keep_frozen_positions() {
     if (!this->heat_ || this->heat_->frozen() == 0) return;
     float* x = pairs_.a();
     pairs_.each([&](int k) {
@@ -197,8 +197,8 @@ void PbfSolver<D>::collide() {
     if (carried_dt_ > 0)
         push_bodies();
     else
-        solids_.push_out(pairs_, pairs_.a(), fluid_.clamps);
-    hold_places();
+        solids_.push_out(pairs_, pairs_.a(), fluid_.corrections);
+    keep_frozen_positions();
     pairs_.refresh(pairs_.a(), true);
 }
 
@@ -232,7 +232,7 @@ void PbfSolver<D>::push_bodies() {
     float* x = pairs_.a();
     before_push_.clear();
     for (const int k : solids_.near()) before_push_.insert(before_push_.end(), x + 4 * k, x + 4 * k + D);
-    solids_.push_out(pairs_, x, fluid_.clamps);
+    solids_.push_out(pairs_, x, fluid_.corrections);
     push_on(*bodies_, fluid_.domain, solids_.near(), before_push_.data(), x, carried_dt_);
 }
 
@@ -268,10 +268,10 @@ void PbfSolver<D>::update(real dt, real slow) {
         particles::Fluid<D>::put(fluid_.x, i, x);
         fluid_.density[static_cast<std::size_t>(i)] = fluid_.rho0 * static_cast<real>(density_[static_cast<std::size_t>(k)]);
     });
-    if (this->ice_moves() && dt > 0) this->ice_->arrive(fluid_, slow);
+    if (this->ice_moves() && dt > 0) this->ice_->finish_motion(fluid_, slow);
     if (dt > 0) return;
-    this->dismiss();  // the last use of ghost particles
-    this->sum_up_clamps();
+    this->drop_ghosts();  // the last use of ghost particles
+    this->sum_up_corrections();
 }
 
 /// Over this rank's own particles.

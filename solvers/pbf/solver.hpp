@@ -20,7 +20,7 @@ private:
     using Base::fluid_, Base::kernels_, Base::walls_, Base::pairs_, Base::solids_, Base::flow_, Base::effects_;
     using Base::passes_, Base::options_, Base::bodies_, Base::speed_, Base::step_, Base::last_dt_;
 
-    void stay() override;
+    void predict_at_rest() override;
     void iterate_afresh() override;
     void predict(real dt);
     void find_neighbours();
@@ -29,7 +29,7 @@ private:
     void find_lambdas();
     void correct();
     void collide();
-    void hold_places();
+    void keep_frozen_positions();
     void start_bodies(real dt);
     void push_bodies_ahead();
     void carry_bodies(const float* density);

@@ -71,7 +71,7 @@ real AddedColumns<D>::energy(const Coloured<float>& u) {
 }
 
 template <int D>
-void AddedColumns<D>::turn(real beta) {
+void AddedColumns<D>::update_direction(real beta) {
     for (std::size_t k = 0; k < p_.size(); ++k)
         for (std::size_t l = 0; l < LowRank::columns; ++l) p_[k][l] = u_[k][l] + beta * p_[k][l];
 }

@@ -24,7 +24,7 @@ public:
     /// u·U C Uᵀ u of a vector that is about to be added to the direction.
     real energy(const Coloured<float>& u);
     /// direction = u + β direction.
-    void turn(real beta);
+    void update_direction(real beta);
     /// x += α direction.
     void move(real alpha);
     /// r −= α U C Uᵀ p.

@@ -37,9 +37,9 @@ private:
             M_.apply(r_, z_);
             const real rz_new = dot(r_, z_);
             if constexpr (ChangesWithResidual<Preconditioner>)
-                turn(-dot(z_, Ap_) / pAp);
+                update_direction(-dot(z_, Ap_) / pAp);
             else
-                turn(rz_new / rz);
+                update_direction(rz_new / rz);
             rz = rz_new;
         }
     }
@@ -58,7 +58,7 @@ private:
     }
 
     /// p = z + β p.
-    void turn(real beta) {
+    void update_direction(real beta) {
         for_each_block(p_.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) p_[i] = z_[i] + beta * p_[i];
         });

@@ -233,7 +233,7 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
         const real expected = norm * reduction, before = norm;
         const bool ends = progress.would_end(expected), replaces = ends || expected <= factor * replaced;
         begun = !ends;
-        if (!added_.empty()) added_.turn(beta);
+        if (!added_.empty()) added_.update_direction(beta);
         if (replaces) {
             see_answer();
             if (!added_.empty()) added_.move(alpha);

@@ -165,7 +165,7 @@ void Hierarchy<D>::window() {
 
 /// Exchanges the matrix of a level: ghost planes of this rank, or all planes.
 template <int D>
-void Hierarchy<D>::bring_beside(std::size_t l) {
+void Hierarchy<D>::fill_ghosts(std::size_t l) {
     Level<D>& level = levels_[l];
     std::vector<Planes> all;
     for (float* face : level.face) all.push_back(level.natural_planes(face));
@@ -223,7 +223,7 @@ void Hierarchy<D>::fill(const Natural<D>& problem, std::size_t l) {
         coarsen_level(level, levels_[1], DerivedRows<D>{problem});
     else
         coarsen_level(level, levels_[l + 1], StoredRows<D>{level});
-    if (!level.held.empty()) bring_beside(l + 1);
+    if (!level.held.empty()) fill_ghosts(l + 1);
 }
 
 template <int D>

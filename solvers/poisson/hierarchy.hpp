@@ -27,7 +27,7 @@ private:
     bool plan(const Natural<D>& problem);
     void window();
     void lay_out();
-    void bring_beside(std::size_t l);
+    void fill_ghosts(std::size_t l);
     void fill(const Natural<D>& problem, std::size_t l);
     void build_coarsest();
 

@@ -54,7 +54,7 @@ public:
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) final { return continue_solve({}, p, b); }
     /// The same; iterations and history include those of another method's attempt.
     const Report& continue_solve(const Report& attempt, Grid<real, D>& p, const Grid<real, D>& b);
-    void aim(real tolerance) final { options_.tolerance = tolerance; }
+    void set_tolerance(real tolerance) final { options_.tolerance = tolerance; }
     std::size_t bytes() const final;
 
 protected:

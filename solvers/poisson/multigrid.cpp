@@ -52,7 +52,7 @@ public:
 
     /// A component without air would require removing the columns' means; the algebraic cycle does not support columns.
     const Report* solve(Grid<real, D>& p, Grid<real, D>& b, const LowRank& more) override {
-        if (!geometric_fits_ || problem_.closed() > 0 || over_ranks()) return nullptr;
+        if (!geometric_fits_ || problem_.closed() > 0 || is_distributed()) return nullptr;
         const Stopwatch watch;
         const bool solved = geometric_.solve(problem_, p, b, options_, report_, more);
         report_.solve_seconds = watch.seconds();
@@ -62,9 +62,9 @@ public:
         return &report_;
     }
 
-    void aim(real tolerance) override {
+    void set_tolerance(real tolerance) override {
         options_.tolerance = tolerance;
-        if (algebraic_ != nullptr) algebraic_->aim(tolerance);
+        if (algebraic_ != nullptr) algebraic_->set_tolerance(tolerance);
     }
 
     std::size_t bytes() const override { return problem_.bytes() + geometric_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0); }
@@ -75,7 +75,7 @@ private:
     /// In parallel, replicated on each rank.
     const Report& continue_alone(Grid<real, D>& p, const Grid<real, D>& b) {
         if (algebraic_ == nullptr) set_up_algebraic();
-        if (!over_ranks()) return algebraic_->continue_solve(report_, p, b);
+        if (!is_distributed()) return algebraic_->continue_solve(report_, p, b);
         Grid<real, D> whole_b = b;
         gather(p);
         gather(whole_b);

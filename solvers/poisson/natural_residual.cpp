@@ -87,7 +87,7 @@ void Natural<D>::sum_row(int row, const real* values) const {
 /// In parallel, receives the sums of the other ranks' runs.
 template <int D>
 void Natural<D>::gather_sums() const {
-    if (!over_ranks() || closed_ == 0) return;
+    if (!is_distributed() || closed_ == 0) return;
     gather_by_runs(sum_.data());
 }
 

@@ -30,7 +30,7 @@ class Petsc final : public ListSolver<D> {
 public:
     Petsc(const std::string& preconditioner, const Options& options)
         : ListSolver<D>(options),
-          ranks_(slabs().builds_alone() ? 1 : slabs().ranks()),
+          ranks_(slabs().builds_serial() ? 1 : slabs().ranks()),
           engine_(entry()(preconditioner.c_str(), D, ranks_)) {}
 
 private:

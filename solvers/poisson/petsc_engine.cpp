@@ -117,7 +117,7 @@ private:
             if (!has_diagonal) diagonal();
             start_.push_back(static_cast<PetscInt>(column_.size()));
         }
-        hand_over(A.size(), static_cast<PetscInt>(end_ - first_));
+        create_matrix(A.size(), static_cast<PetscInt>(end_ - first_));
         if (components_->closed == 0) return;
         MatNullSpace null = nullptr;
         check(MatNullSpaceCreate(together_, PETSC_FALSE, 0, nullptr, &null));
@@ -126,7 +126,7 @@ private:
         check(MatNullSpaceDestroy(&null));
     }
 
-    void hand_over(PetscInt n, PetscInt own) {
+    void create_matrix(PetscInt n, PetscInt own) {
         if (ranks_ == 1) {
             check(MatCreateSeqAIJWithArrays(together_, n, n, start_.data(), column_.data(), value_.data(), &matrix_));
             check(VecCreateSeqWithArray(together_, 1, n, nullptr, &x_));

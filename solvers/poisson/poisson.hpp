@@ -71,7 +71,7 @@ public:
     /// problem is not supported, or did not converge; p is then a guess.
     virtual const Report* solve(Grid<real, D>&, Grid<real, D>&, const LowRank&) { return nullptr; }
     /// Sets the relative residual at which later solves may stop. Methods without a tolerance ignore it.
-    virtual void aim(real) {}
+    virtual void set_tolerance(real) {}
     virtual std::size_t bytes() const = 0;
     /// In parallel (core/slabs.hpp): returns whether solve() works on each rank's own planes of b and p. Otherwise it requires them whole,
     /// on all ranks.

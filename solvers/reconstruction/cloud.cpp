@@ -88,8 +88,8 @@ Components part_of(const FieldSet& fields, const FieldView& field) {
     return part;
 }
 
-Brought bring_particles(const Components& position, const Components& velocity, const Domain& domain, std::size_t axis, real band,
-                        const std::function<std::span<const int>(real)>& readers) {
+ReceivedParticles receive_particles(const Components& position, const Components& velocity, const Domain& domain, std::size_t axis,
+                                    real band, const std::function<std::span<const int>(real)>& readers) {
     ListsOfRanks<Carried> lists(static_cast<std::size_t>(slabs().ranks()));
     std::vector<std::size_t> last(lists.size(), position[0].size());  // per rank, the last particle sent to it
     for (std::size_t i = 0; i < position[0].size(); ++i) {
@@ -105,18 +105,18 @@ Brought bring_particles(const Components& position, const Components& velocity, 
         give(position[axis][i]);
         domain.for_images(axis, position[axis][i], band, give);
     }
-    Brought brought;
-    const ListsOfRanks<Carried> come = trade_lists(std::move(lists));
+    ReceivedParticles received;
+    const ListsOfRanks<Carried> come = exchange_lists(std::move(lists));
     std::size_t count = 0;
     for (const auto& list : come) count += list.size();
-    for (std::size_t a = 0; a < position.size(); ++a) brought.x[a].reserve(count);
-    for (std::size_t a = 0; a < velocity.size(); ++a) brought.v[a].reserve(count);
+    for (std::size_t a = 0; a < position.size(); ++a) received.x[a].reserve(count);
+    for (std::size_t a = 0; a < velocity.size(); ++a) received.v[a].reserve(count);
     for (const auto& list : come)
         for (const Carried& one : list) {
-            for (std::size_t a = 0; a < position.size(); ++a) brought.x[a].push_back(one.x[a]);
-            for (std::size_t a = 0; a < velocity.size(); ++a) brought.v[a].push_back(one.v[a]);
+            for (std::size_t a = 0; a < position.size(); ++a) received.x[a].push_back(one.x[a]);
+            for (std::size_t a = 0; a < velocity.size(); ++a) received.v[a].push_back(one.v[a]);
         }
-    return brought;
+    return received;
 }
 
 }  // namespace weir::reconstruction

@@ -62,11 +62,11 @@ Extent extent_of_all(const Extent& own);
 Components part_of(const FieldSet& fields, const FieldView& field);
 
 /// The particles that this rank reads, received from their owners, in the order of one process; velocities where there are any.
-struct Brought {
+struct ReceivedParticles {
     std::array<std::vector<real>, 3> x, v;
 };
 /// readers(x along the axis): the ranks that read particles at x; also applied to images, for particles in a band.
-Brought bring_particles(const Components& position, const Components& velocity, const Domain& domain, std::size_t axis, real band,
-                        const std::function<std::span<const int>(real)>& readers);
+ReceivedParticles receive_particles(const Components& position, const Components& velocity, const Domain& domain, std::size_t axis,
+                                    real band, const std::function<std::span<const int>(real)>& readers);
 
 }  // namespace weir::reconstruction

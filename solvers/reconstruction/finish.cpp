@@ -33,18 +33,18 @@ struct Neighbours {
 };
 
 /// Halo exchange of the points of the layers adjacent to this rank's.
-void bring_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut& cut) {
+void exchange_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut& cut) {
     const auto [begin, end] = layers_of(cut, slabs().rank());
     if (begin == end) return;
-    std::vector<Parcel> parcels;
+    std::vector<Message> messages;
     const auto meet = [&](int layer, std::size_t first, std::size_t last, std::size_t from, std::size_t to) {
         if (layer < 0 || layer + 1 >= cut.planes()) return;
-        parcels.push_back({owner_of(cut, layer), points.data() + first, (last - first) * sizeof(Vec<3>), points.data() + from,
-                           (to - from) * sizeof(Vec<3>)});
+        messages.push_back({owner_of(cut, layer), points.data() + first, (last - first) * sizeof(Vec<3>), points.data() + from,
+                            (to - from) * sizeof(Vec<3>)});
     };
     meet(begin - 1, piece.begin, piece.first_end, piece.below, piece.begin);
     meet(end, piece.last_begin, piece.end, piece.end, piece.above);
-    slabs().trade(parcels);
+    slabs().exchange(messages);
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ void smooth(SurfaceMesh& mesh, const Piece& piece, const std::vector<real>& weig
             moved[at] = mesh.points[at] + (share * weight[own]) * (sum / real(count) - mesh.points[at]);
         });
         mesh.points.swap(moved);
-        if (!cut.empty()) bring_points(mesh.points, piece, cut);
+        if (!cut.empty()) exchange_points(mesh.points, piece, cut);
     };
     for (int pass = 0; pass < passes; ++pass) step(forward), step(back);
 }
@@ -135,14 +135,14 @@ void go_on_elsewhere(const std::vector<Ray>& left, const March& march, const Cut
     for (const Ray& ray : left) leave(ray);
     ListsOfRanks<Arrived> arrived(ranks);
     while (slabs().largest(std::any_of(leaving.begin(), leaving.end(), [](const auto& list) { return !list.empty(); })) > 0) {
-        const ListsOfRanks<Ray> come = trade_lists(std::exchange(leaving, ListsOfRanks<Ray>(ranks)));
+        const ListsOfRanks<Ray> come = exchange_lists(std::exchange(leaving, ListsOfRanks<Ray>(ranks)));
         for (const auto& list : come)
             for (Ray ray : list) {
                 const real length = march.go(ray, false);
                 length < 0 ? leave(ray) : arrived[static_cast<std::size_t>(ray.rank)].push_back({ray.point, length});
             }
     }
-    for (const auto& list : trade_lists(std::move(arrived)))
+    for (const auto& list : exchange_lists(std::move(arrived)))
         for (const Arrived& one : list) thickness[one.point] = one.thickness;
 }
 

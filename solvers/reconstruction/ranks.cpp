@@ -1,6 +1,6 @@
 // Distributed surface reconstruction. Each rank samples the lattice on its own planes, from the particles read there or from its planes of
 // the grid, contours its own layers and postprocesses their points.
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "core/owners.hpp"
 #include "reconstruction/reconstruction.hpp"
 
@@ -36,7 +36,7 @@ void Reconstruction::cut_by_particles(const Components& position) {
     for (const real x : position[axis]) ++own[samples_.between(axis, x).low];
     const std::vector<std::int64_t> all = of_all_ranks(own);
     for (std::size_t i = 0; i < all.size(); ++i) work[i % work.size()] += all[i];
-    cut_ = planes < ranks ? cut_of(planes, ranks) : cut_by_work(work, ranks);
+    cut_ = planes < ranks ? cut_of(planes, ranks) : load_balanced_cut(work, ranks);
 }
 
 /// Sends particles to the ranks that read their cells or the cells of their images.
@@ -52,26 +52,26 @@ void Reconstruction::share_particles(const Components& position) {
         const auto plane = static_cast<std::size_t>(field_.cell_plane(x));
         return plane < readers.size() ? std::span<const int>(readers[plane]) : std::span<const int>();
     };
-    brought_ = bring_particles(position, velocity_, domain_, axis, band(), of_place);
+    received_ = receive_particles(position, velocity_, domain_, axis, band(), of_place);
     const auto views = [](const std::array<std::vector<real>, 3>& lists, std::size_t count) {
         return Components(lists.begin(), lists.begin() + static_cast<std::ptrdiff_t>(count));
     };
-    gather(views(brought_.x, position.size()), domain_, band(), cloud_);
-    for (auto& list : brought_.x) std::vector<real>().swap(list);
-    velocity_ = views(brought_.v, velocity_.size());
+    gather(views(received_.x, position.size()), domain_, band(), cloud_);
+    for (auto& list : received_.x) std::vector<real>().swap(list);
+    velocity_ = views(received_.v, velocity_.size());
 }
 
 /// A cell field, on own planes and on the ghost planes that are read.
 PlaneStore<real> Reconstruction::with_planes_beside(const FieldSet& fields, const FieldView& field) const {
-    constexpr int deep = 2;
+    constexpr int ghost_planes = 2;
     const auto axis = static_cast<std::size_t>(samples_.slowest());
     const int rank = slabs().rank(), planes = fields.grid.cells[axis], begin = fields.cut->begin(rank);
     const std::size_t plane = field.data[0].size() / static_cast<std::size_t>(planes), first = plane * static_cast<std::size_t>(begin);
-    const OwnPlanes mine(*fields.cut, 1, deep);
+    const OwnPlanes mine(*fields.cut, 1, ghost_planes);
     PlaneStore<real> known(0, plane, planes, 0, 0.0);
     std::copy_n(field.data[0].data() + first, plane * static_cast<std::size_t>(fields.cut->end(rank, planes) - begin),
                 known.data() + first);
-    slabs().refresh(*fields.cut, {known.data(), plane * sizeof(real), planes, 0, known.held()}, deep, false);
+    slabs().refresh(*fields.cut, {known.data(), plane * sizeof(real), planes, 0, known.held()}, ghost_planes, false);
     return known;
 }
 
@@ -88,9 +88,9 @@ void Reconstruction::add_velocity_elsewhere(const std::function<Vec<3>(const Vec
         if (samples_.is_near(x)) continue;
         asked[static_cast<std::size_t>(owner_of(cut_, samples_.layer_of(x)))].push_back({x, at, slabs().rank()});
     }
-    for (const auto& list : trade_lists(std::move(asked)))
+    for (const auto& list : exchange_lists(std::move(asked)))
         for (const Asked& one : list) answered[static_cast<std::size_t>(one.rank)].push_back({velocity_at(one.x), one.point, one.rank});
-    for (const auto& list : trade_lists(std::move(answered)))
+    for (const auto& list : exchange_lists(std::move(answered)))
         for (const Asked& one : list) mesh_.velocity[one.point] = one.x;
 }
 

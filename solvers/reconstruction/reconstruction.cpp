@@ -18,7 +18,7 @@ namespace {
 /// Crowding above which a particle counts as one of many: a lattice has 12.5 (Loeschner et al. 2023 use 13).
 constexpr real crowd = 13;
 /// Markers of a grid along the edge of a cell.
-constexpr real markers_a_cell = 2;
+constexpr real markers_per_cell = 2;
 
 /// 0 at 0, 1 at 1, with zero first and second derivatives at both (Loeschner et al. 2023, section 3.2).
 real smoother_step(real s) { return s * s * s * (s * (6 * s - 15) + 10); }
@@ -141,7 +141,7 @@ void Reconstruction::from_particles(const FieldSet& fields) {
     Extent all;
     {
         const auto timed = passes_.time("particles");
-        cloud_.spacing = fields.grid.spacing[0] / (markers ? markers_a_cell : 1);
+        cloud_.spacing = fields.grid.spacing[0] / (markers ? markers_per_cell : 1);
         gather(own, domain_, band(), cloud_);
         all = in_parts_ ? extent_of_all(extent_of(cloud_)) : extent_of(cloud_);
         if (!all.finite) throw NumericalFailure("position", "a particle's position is not finite");
@@ -210,7 +210,7 @@ void Reconstruction::lay_samples(const Extent& all) {
 void Reconstruction::make_contour() {
     {
         const auto timed = passes_.time("prepare");
-        samples_.bring(cut_);
+        samples_.exchange(cut_);
         keep_out_of(samples_, flat_solids_);
         keep_out_of(samples_, solids_);
         keep_inside(samples_, domain_.lo, domain_.hi);
@@ -265,10 +265,10 @@ void Reconstruction::add_velocity(const FieldSet& fields) {
 }
 
 std::size_t Reconstruction::bytes() const {
-    std::size_t brought = 0;
-    for (const auto* lists : {&brought_.x, &brought_.v})
-        for (const auto& list : *lists) brought += list.capacity() * sizeof(real);
-    return 3 * cloud_.x[0].capacity() * sizeof(real) + cloud_.source.capacity() * sizeof(int) + brought + field_.bytes() +
+    std::size_t received = 0;
+    for (const auto* lists : {&received_.x, &received_.v})
+        for (const auto& list : *lists) received += list.capacity() * sizeof(real);
+    return 3 * cloud_.x[0].capacity() * sizeof(real) + cloud_.source.capacity() * sizeof(int) + received + field_.bytes() +
            samples_.depth.bytes() + 3 * mesh_.points.capacity() * sizeof(Vec<3>) + mesh_.corners.capacity() * sizeof(mesh_.corners[0]) +
            mesh_.lines.capacity() * sizeof(mesh_.lines[0]) + across_.capacity() * sizeof(real) + mesh_.thickness.capacity() * sizeof(real);
 }

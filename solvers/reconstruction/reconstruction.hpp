@@ -62,8 +62,8 @@ private:
     bool in_parts_ = false;
     Cut cut_;  // of the lattice's planes, in parallel
     Cloud cloud_;
-    Components velocity_;  // of the cloud's particles, if any
-    Brought brought_;      // in parallel, the storage of these
+    Components velocity_;         // of the cloud's particles, if any
+    ReceivedParticles received_;  // in parallel, the storage of these
     ParticleField field_;
     Samples samples_;
     std::vector<real> across_;  // velocity normal to the plane of a 2D liquid: zero

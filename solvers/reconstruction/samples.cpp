@@ -22,7 +22,7 @@ void Samples::make_room(const Cut& cut) {
     held = {std::max(0, own.begin - beyond), std::min(count, own.end + beyond)};
 }
 
-void Samples::bring(const Cut& cut) {
+void Samples::exchange(const Cut& cut) {
     if (cut.empty()) return;
     slabs().refresh(cut, {depth.data(), plane() * sizeof(float), n[static_cast<std::size_t>(slowest())], 0, depth.held()}, beyond, false);
 }

@@ -27,7 +27,7 @@ struct Samples {
     /// Allocates all of them; in parallel, with this partition, those that this rank stores.
     void make_room(const Cut& cut = {});
     /// In parallel: fills the ghost planes from their owners.
-    void bring(const Cut& cut);
+    void exchange(const Cut& cut);
     /// In 3D z, for a plane of samples y.
     int slowest() const { return n[2] > 1 ? 2 : 1; }
     std::size_t plane() const { return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(slowest() == 2 ? n[1] : 1); }

@@ -2,7 +2,7 @@
 
 #include "geometry/mesh/mesh.hpp"
 #include "geometry/sides.hpp"
-#include "rigid/feelers.hpp"
+#include "rigid/contact_spheres.hpp"
 #include "rigid/overlaps.hpp"
 #include "scene/names.hpp"
 
@@ -170,7 +170,7 @@ void Bodies<D>::read(const scene::Scene& scene, std::size_t number) {
     for (const Body<D>& other : list_)
         if (other.name == body.name) scene.refuse(path, "two bodies have the name \"" + body.name + "\"");
     body.shape = geometry::make_shape<D>(table);
-    body.feelers = feelers_of<D>(table);
+    body.contact_spheres = contact_spheres_of<D>(table);
     body.weigh(mass_by(scene, table, path, body.moments.volume),
                table.has("centre_of_mass") ? table.vec<D>("centre_of_mass") : body.moments.centre);
     Vec<D> far;
@@ -254,8 +254,8 @@ template <int D>
 void Bodies<D>::show(FieldSet& set) const {
     if (empty()) return;
     constexpr std::size_t n = freedoms<D>, turns = n - D, angles = D == 2 ? 1 : 3;
-    const bool rubbed = std::any_of(list_.begin(), list_.end(), [](const Body<D>& b) { return b.rubbed; });
-    shown_.assign(D + 2 * n + angles + (rubbed ? n : 0), std::vector<real>(count()));
+    const bool has_viscous = std::any_of(list_.begin(), list_.end(), [](const Body<D>& b) { return b.has_viscous; });
+    shown_.assign(D + 2 * n + angles + (has_viscous ? n : 0), std::vector<real>(count()));
     std::size_t at = 0;
     const auto add = [&](const char* name, const char* unit, std::size_t components, auto&& value) {
         FieldView view{name, unit, Where::particle, body_set_name, {}};
@@ -272,7 +272,7 @@ void Bodies<D>::show(FieldSet& set) const {
     add("spin", "rad/s", turns, [](const Body<D>& b, std::size_t k) { return b.velocity[D + k]; });
     add("force", D == 2 ? "N/m" : "N", D, [](const Body<D>& b, std::size_t k) { return b.force[k]; });
     add("torque", D == 2 ? "N" : "N m", turns, [](const Body<D>& b, std::size_t k) { return b.force[D + k]; });
-    if (!rubbed) return;
+    if (!has_viscous) return;
     add("viscous_force", D == 2 ? "N/m" : "N", D, [](const Body<D>& b, std::size_t k) { return b.viscous[k]; });
     add("viscous_torque", D == 2 ? "N" : "N m", turns, [](const Body<D>& b, std::size_t k) { return b.viscous[D + k]; });
 }
@@ -309,7 +309,7 @@ std::size_t Bodies<D>::bytes() const {
     std::size_t total = list_.capacity() * sizeof(Body<D>);
     std::set<const geometry::Mesh*> meshes;  // bodies from the same file share it
     for (const Body<D>& body : list_) {
-        total += body.feelers.capacity() * sizeof(Feeler<D>);
+        total += body.contact_spheres.capacity() * sizeof(ContactSphere<D>);
         if (const auto* posed = body.shape->mesh(); posed && meshes.insert(posed->mesh.get()).second) total += posed->mesh->bytes();
     }
     for (const auto& values : shown_) total += values.capacity() * sizeof(real);

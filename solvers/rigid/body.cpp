@@ -35,8 +35,8 @@ Vec<3> spin_of(const Body<D>& body) {
 /// Returns whether the shape is a ball, equal to its single contact sphere.
 template <int D>
 bool is_ball(const Body<D>& body) {
-    if (body.feelers.size() != 1) return false;
-    const real r = body.feelers[0].radius, ball = D == 2 ? pi * r * r : 4 * pi / 3 * r * r * r;
+    if (body.contact_spheres.size() != 1) return false;
+    const real r = body.contact_spheres[0].radius, ball = D == 2 ? pi * r * r : 4 * pi / 3 * r * r * r;
     return std::abs(body.moments.volume - ball) < 1e-9 * ball;
 }
 
@@ -129,7 +129,7 @@ real Body<D>::max_speed() const {
     for (std::size_t k = 0; k < freedoms<D>; ++k) (k < D ? moves : turns) += velocity[k] * velocity[k];
     // Rotation moves no surface point of a ball except by the offset of its middle. Otherwise a massless ball, which the error of grid
     // faces accelerates to metres per second, would limit every step needlessly.
-    const real arm = is_ball(*this) && !no_slip ? norm(feelers[0].at - centre) : radius;
+    const real arm = is_ball(*this) && !no_slip ? norm(contact_spheres[0].at - centre) : radius;
     return std::sqrt(moves) + arm * std::sqrt(turns);
 }
 
@@ -143,18 +143,18 @@ real Body<D>::kinetic_energy() const {
 }
 
 template <int D>
-void Body<D>::fly(real dt, const Vec<D>& gravity) {
+void Body<D>::advance_free(real dt, const Vec<D>& gravity) {
     for (int a = 0; a < D; ++a) {
         const auto k = static_cast<std::size_t>(a);
         if (held[k]) continue;
         at[a] += dt * velocity[k];
         if (wet == 0 && !touches) at[a] += 0.5 * dt * dt * gravity[a];
     }
-    turn(dt);
+    rotate(dt);
 }
 
 template <int D>
-void Body<D>::turn(real dt) {
+void Body<D>::rotate(real dt) {
     if constexpr (D == 2) {
         orientation[0] += dt * velocity[2];
     } else {
@@ -173,10 +173,10 @@ void Body<D>::shift(const Twist<D>& by) {
     if constexpr (D == 2) {
         orientation[0] += by[2];
     } else {
-        const Vec<3> turn{{by[3], by[4], by[5]}};
-        const real angle = norm(turn);
+        const Vec<3> rotation{{by[3], by[4], by[5]}};
+        const real angle = norm(rotation);
         if (angle == 0) return;
-        orientation = product(turn_about(turn / angle, angle), orientation);
+        orientation = product(turn_about(rotation / angle, angle), orientation);
         normalise(orientation);
     }
 }
@@ -239,7 +239,7 @@ void Body<D>::save(Checkpoint& to, const std::string& block) const {
     to.put_value(block + "orientation", orientation);
     to.put_value(block + "velocity", velocity);
     to.put_value(block + "force", force);
-    if (rubbed) to.put_value(block + "viscous", viscous);
+    if (has_viscous) to.put_value(block + "viscous", viscous);
     to.put_value(block + "wet", wet);
     to.put_value(block + "touches", touches);
 }
@@ -250,7 +250,7 @@ void Body<D>::restore(const Checkpoint& from, const std::string& block) {
     orientation = from.template get_value<Orientation>(block + "orientation");
     velocity = from.template get_value<Twist<D>>(block + "velocity");
     force = from.template get_value<Twist<D>>(block + "force");
-    if (rubbed) viscous = from.template get_value<Twist<D>>(block + "viscous");
+    if (has_viscous) viscous = from.template get_value<Twist<D>>(block + "viscous");
     wet = from.template get_value<real>(block + "wet");
     touches = from.template get_value<char>(block + "touches") != 0;
     const auto require = [&](const char* which, const auto& value) {  // all are lists of reals

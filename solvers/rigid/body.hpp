@@ -28,7 +28,7 @@ using Orientation = std::array<real, 4>;
 
 /// A contact sphere: a ball inside a body that touches its surface.
 template <int D>
-struct Feeler {
+struct ContactSphere {
     Vec<D> at{};  // at the scene's initial position [m]
     real radius = 0;
 };
@@ -37,7 +37,7 @@ template <int D>
 struct Body {
     std::string name;
     geometry::ShapePtr<D> shape;
-    std::vector<Feeler<D>> feelers;
+    std::vector<ContactSphere<D>> contact_spheres;
     Moments<D> moments;  // of the shape, density 1
     Vec<D> centre{};     // of mass, at the scene's initial position [m]
     real radius = 0;     // of a bounding ball about the centre of mass [m]
@@ -51,12 +51,12 @@ struct Body {
     // State
     Vec<D> at{};  // of the centre of mass [m]
     Orientation orientation{1, 0, 0, 0};
-    Twist<D> velocity{};   // [m/s], then [rad/s]
-    bool touches = false;  // had contact, or a joint, in the last step
-    real wet = 0;          // liquid volume fraction at its surface in that step, in [0, 1]
-    Twist<D> force{};      // force of the fluid, mean over the last step [N], then torque about the centre of mass [N m]
-    Twist<D> viscous{};    // the viscous part of that
-    bool rubbed = false;   // viscous: its part is written
+    Twist<D> velocity{};       // [m/s], then [rad/s]
+    bool touches = false;      // had contact, or a joint, in the last step
+    real wet = 0;              // liquid volume fraction at its surface in that step, in [0, 1]
+    Twist<D> force{};          // force of the fluid, mean over the last step [N], then torque about the centre of mass [N m]
+    Twist<D> viscous{};        // the viscous part of that
+    bool has_viscous = false;  // viscous: its part is written
 
     real density() const { return mass / moments.volume; }
     /// Pose and velocity field, as for solids.
@@ -68,7 +68,7 @@ struct Body {
     Vec<3> angular_momentum() const;  // about the centre of mass; 2D: about z, in the last entry
     /// Free motion for a time dt: with its velocity, or, without water and walls, along the parabola of `gravity`; the velocity change by
     /// gravity is applied later.
-    void fly(real dt, const Vec<D>& gravity);
+    void advance_free(real dt, const Vec<D>& gravity);
     /// Translates [m] and rotates [rad] it, independent of its velocity.
     void shift(const Twist<D>& by);
     /// Mass and inertia from the shape's moments of unit density, about the centre of mass.
@@ -78,7 +78,7 @@ struct Body {
     void restore(const Checkpoint& from, const std::string& name);
 
 private:
-    void turn(real dt);
+    void rotate(real dt);
     void turn_freely(real dt);
 };
 

@@ -78,10 +78,10 @@ void Contacts<D>::touch_walls(const std::vector<Body<D>>& bodies, std::size_t b,
             if (away > bodies[b].radius + around.reach) continue;
             const Vec<D> n = (end == 0 ? 1.0 : -1.0) * Vec<D>::unit(a);
             const std::size_t first = list_.size();
-            for (const Feeler<D>& feeler : bodies[b].feelers) {
-                const Vec<D> x = pose.to_world(feeler.at);
-                const real gap = (end == 0 ? x[a] - around.min[a] : around.max[a] - x[a]) - feeler.radius;
-                if (gap <= around.reach) against(b, -1, x - feeler.radius * n, n, {}, gap, bodies);
+            for (const ContactSphere<D>& sphere : bodies[b].contact_spheres) {
+                const Vec<D> x = pose.to_world(sphere.at);
+                const real gap = (end == 0 ? x[a] - around.min[a] : around.max[a] - x[a]) - sphere.radius;
+                if (gap <= around.reach) against(b, -1, x - sphere.radius * n, n, {}, gap, bodies);
             }
             reduce(first, bodies);
         }
@@ -93,11 +93,11 @@ void Contacts<D>::touch_solid(const std::vector<Body<D>>& bodies, std::size_t b,
     const geometry::Solids<D>& solids = *around.solids;
     const geometry::Pose<D> pose = bodies[b].pose();
     const std::ptrdiff_t other = solid < around.prescribed ? -1 : static_cast<std::ptrdiff_t>(solid - around.prescribed);
-    for (const Feeler<D>& feeler : bodies[b].feelers) {
-        const Vec<D> x = pose.to_world(feeler.at);
-        const real gap = solids.distance(solid, x) - feeler.radius;
+    for (const ContactSphere<D>& sphere : bodies[b].contact_spheres) {
+        const Vec<D> x = pose.to_world(sphere.at);
+        const real gap = solids.distance(solid, x) - sphere.radius;
         if (gap > around.reach) continue;
-        const Vec<D> n = gradient<D>(solids, solid, x, 1e-4 * bodies[b].radius), at = x - feeler.radius * n;
+        const Vec<D> n = gradient<D>(solids, solid, x, 1e-4 * bodies[b].radius), at = x - sphere.radius * n;
         against(b, other, at, n, other < 0 ? solids.pose(solid).velocity_at(at) : Vec<D>{}, gap, bodies);
     }
 }

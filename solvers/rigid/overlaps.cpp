@@ -74,8 +74,8 @@ void refuse_in_walls(const scene::Scene& scene, const std::vector<Body<D>>& bodi
         for (const int end : {0, 1}) {
             if (!around.wall[static_cast<std::size_t>(2 * a + end)]) continue;
             real depth = 0;
-            for (const Feeler<D>& feeler : bodies[b].feelers)
-                depth = std::max(depth, feeler.radius + (end == 0 ? around.min[a] - feeler.at[a] : feeler.at[a] - around.max[a]));
+            for (const ContactSphere<D>& sphere : bodies[b].contact_spheres)
+                depth = std::max(depth, sphere.radius + (end == 0 ? around.min[a] - sphere.at[a] : sphere.at[a] - around.max[a]));
             if (depth > touching * bodies[b].radius)
                 scene.refuse(fmt::format("bodies[{}]", b),
                              fmt::format("{} overlaps the wall {}_{} at {} = {:.6g} m by {:.4g} m", label<D>(scene, b), "xyz"[a],
@@ -90,7 +90,7 @@ template <int D>
 real depth_in(const Body<D>& body, const Bounds<D>& box, const geometry::Shape<D>& other) {
     if (other.distance(body.centre) >= other.steepest() * body.radius) return 0;
     real depth = 0;
-    for (const Feeler<D>& feeler : body.feelers) depth = std::max(depth, feeler.radius - other.distance(feeler.at));
+    for (const ContactSphere<D>& sphere : body.contact_spheres) depth = std::max(depth, sphere.radius - other.distance(sphere.at));
     return depth > touching * body.radius ? depth : 2 * common_radius<D>(*body.shape, other, box);
 }
 

@@ -12,7 +12,7 @@ namespace weir::scene {
     scene.refuse(key, key + ": " + what + " not supported in parallel (MPI); run in one process");
 }
 
-inline void refuse_hand(const Scene& scene) {
+inline void refuse_brush(const Scene& scene) {
     if (scene.effect("hand")) one_process_only(scene, "effects.hand", "interactive forcing is");
 }
 

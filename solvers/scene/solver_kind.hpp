@@ -33,11 +33,11 @@ struct SolverKind {
     std::function<std::unique_ptr<Solver>(const Scene&)> make;
     PlainStep plain{};
     /// Rejects, at its key, scenes that are not supported in parallel. Empty: the solver runs in one process only.
-    std::function<void(const Scene&)> over_ranks{};
+    std::function<void(const Scene&)> check_parallel{};
     /// What is distributed over the ranks.
     Shared shared = Shared::by_planes;
     /// The replicated work of a step of this scene with this partition, in a few words; an empty text, or no function: none.
-    std::function<std::string(const Scene&, const Cut&)> by_all{};
+    std::function<std::string(const Scene&, const Cut&)> replicated_work{};
     /// Returns whether a scene with this partition has distributed storage. Empty: all ranks store everything.
     std::function<bool(const Scene&, const Cut&)> holds_own_part{};
     /// Estimate of what a rank sends in such a step. Empty: unknown.

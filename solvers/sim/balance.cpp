@@ -56,8 +56,9 @@ real lowest_energy(const scene::Scene& scene, const GridView& grid, const std::v
 
 /// Net inflow that the solver recorded since the start; no value where it is not recorded.
 std::optional<real> inflow_of_volume(const scene::Scene& scene, const std::vector<Integral>& start, const std::vector<Integral>& end) {
-    for (const char* ledger : {"volume_target", "poured_volume"})
-        if (const Integral* before = find(start, ledger), *after = find(end, ledger); before && after) return after->value - before->value;
+    for (const char* balance : {"volume_target", "poured_volume"})
+        if (const Integral* before = find(start, balance), *after = find(end, balance); before && after)
+            return after->value - before->value;
     return is_closed(scene) ? std::optional<real>(0) : std::nullopt;
 }
 

@@ -1,7 +1,7 @@
 #include "sim/loop.hpp"
 
 #include "core/slabs.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/run_id.hpp"
 
 #include <chrono>
@@ -70,13 +70,13 @@ bool all_can_read(const std::filesystem::path& file) {
 
 /// In parallel, a run that goes on is also repartitioned where the state requires it (load balancing).
 void save(Simulation& simulation, const std::filesystem::path& folder, const std::string& run, bool goes_on) {
-    bool cut_anew = false;
+    bool repartition = false;
     {
         const Checkpoint checkpoint = state_of(simulation, run);
         checkpoint.write(checkpoint_file(folder));
-        cut_anew = goes_on && simulation.asks_for_other_cut(checkpoint);
+        repartition = goes_on && simulation.needs_repartition(checkpoint);
     }
-    if (cut_anew && all_can_read(checkpoint_file(folder))) simulation.cut_anew(Checkpoint::read(checkpoint_file(folder)));
+    if (repartition && all_can_read(checkpoint_file(folder))) simulation.repartition(Checkpoint::read(checkpoint_file(folder)));
 }
 
 }  // namespace
@@ -104,13 +104,13 @@ Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options)
         if (simulation.at_frame()) watcher.on_frame(simulation);
         if (!before_end && (simulation.at_frame() || simulation.steps() % good_state_every == 0)) good.keep(simulation);
         const bool finished = simulation.finished();
-        const bool asked = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 || finished);
+        const bool requested = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 || finished);
         const int stops = options.stop_requests();
         const bool stop = !finished && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
-        if (asked && finished && before_end && !simulation.steady()) {  // a later end can then be requested
+        if (requested && finished && before_end && !simulation.steady()) {  // a later end can then be requested
             put_ended(good.state, simulation.end_time());
             good.state.write(checkpoint_file(options.folder));
-        } else if (asked || stop) {
+        } else if (requested || stop) {
             save(simulation, options.folder, options.run, !stop && !finished);
         }
         if (stop) return Ending::interrupted;

@@ -1,7 +1,7 @@
 // The part of a solver's fields that this rank reads in parallel (FieldSet::cut), and reductions over all parts.
 #pragma once
-#include "core/in_turn.hpp"
 #include "core/owners.hpp"
+#include "core/rank_ordered.hpp"
 #include "core/solver.hpp"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ inline bool in_parts(const FieldSet& fields, const FieldView& view) {
 /// one process.
 template <class T, class F>
 T added_by_owners(const FieldSet& fields, const FieldView& view, T value, const F& add) {
-    if (in_parts(fields, view)) return in_turn(value, add);
+    if (in_parts(fields, view)) return rank_ordered_reduction(value, add);
     add(value);
     return value;
 }

@@ -1,7 +1,7 @@
 #include "sim/probes.hpp"
 
-#include "sim/asked_times.hpp"
 #include "sim/probe_kinds.hpp"
+#include "sim/requested_times.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ void require_rows(const scene::Scene& scene, std::size_t probe, real every) {
                      fmt::format("at most {:.0e}", most_rows));
 }
 
-bool is_at(real t, real asked) { return std::abs(t - asked) <= same_time(asked); }
+bool is_at(real t, real requested) { return std::abs(t - requested) <= same_time(requested); }
 
 /// Linear interpolation between the values at the beginning (s = 0) and at the end of a step.
 std::vector<real> between(const std::vector<real>& begin, const std::vector<real>& end, real s) {
@@ -79,9 +79,9 @@ void Probes::join(std::size_t probe, const Solver& solver, FieldSet& fields) {
     Clock& clock = clocks_[probe];
     clock.joins = false;
     clock.next = first_after(clock.every, solver.time());
-    if (clock.next == 0 || !is_at(solver.time(), asked_time(clock.every, clock.next - 1))) return;
+    if (clock.next == 0 || !is_at(solver.time(), requested_time(clock.every, clock.next - 1))) return;
     if (clock.begin.empty()) clock.begin = measured(probe, solver, fields);
-    series_[probe].times.push_back(asked_time(clock.every, clock.next - 1));
+    series_[probe].times.push_back(requested_time(clock.every, clock.next - 1));
     series_[probe].values.push_back(clock.begin);
 }
 
@@ -93,7 +93,7 @@ void Probes::before_step(const Solver& solver, real dt) {
         Clock& clock = clocks_[i];
         if (clock.every == 0) continue;
         if (clock.joins) join(i, solver, fields);
-        const real due = asked_time(clock.every, clock.next);
+        const real due = requested_time(clock.every, clock.next);
         if (clock.begin.empty() && due <= end && !is_at(end, due)) clock.begin = measured(i, solver, fields);
     }
 }
@@ -102,7 +102,7 @@ void Probes::add_rows(std::size_t probe, const Solver& solver, FieldSet& fields)
     Clock& clock = clocks_[probe];
     const real end = solver.time();
     std::vector<real> after;
-    for (real due = asked_time(clock.every, clock.next); due <= end + same_time(due); due = asked_time(clock.every, ++clock.next)) {
+    for (real due = requested_time(clock.every, clock.next); due <= end + same_time(due); due = requested_time(clock.every, ++clock.next)) {
         if (after.empty()) after = measured(probe, solver, fields);
         const bool passed = !clock.begin.empty() && !is_at(end, due);
         series_[probe].times.push_back(due);

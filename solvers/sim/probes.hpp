@@ -66,7 +66,7 @@ public:
 private:
     struct Clock {
         real every = 0;           // 0: each step
-        std::int64_t next = 0;    // index of the row that is due, at asked_time(every, next)
+        std::int64_t next = 0;    // index of the row that is due, at requested_time(every, next)
         bool joins = false;       // the probe begins in the middle of a run: `next` is not known yet
         std::vector<real> begin;  // measured at the beginning of the step; empty: not measured
     };

@@ -1,6 +1,6 @@
 #include "sim/registry.hpp"
 
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "flow/solver.hpp"
 #include "heightfield/solver.hpp"
 #include "pbf/solver.hpp"
@@ -50,16 +50,16 @@ int planes_of(const scene::Scene& scene) { return static_cast<int>(scene.root().
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
     if (ranks == 1) return;
     const auto& kind = kind_named(scene.solver(), kinds);
-    if (!kind.over_ranks) {
+    if (!kind.check_parallel) {
         std::string able;
         for (const auto& other : kinds)
-            if (other.over_ranks) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
+            if (other.check_parallel) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
         scene.refuse(
             "solver",
             "solver " + scene::quote(scene.solver()) + " runs in one process only, and the number of ranks is " + std::to_string(ranks),
             "solvers that run in parallel: " + able);
     }
-    kind.over_ranks(scene);
+    kind.check_parallel(scene);
     const int planes = planes_of(scene);
     if (kind.shared == scene::Shared::by_planes && planes < ranks && !(kind.cut && kind.cut(scene, ranks).empty()))
         scene.refuse("grid.cells",
@@ -74,13 +74,13 @@ Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& 
     if (kind.cut)
         shares.cut = kind.cut(scene, ranks);
     else if (kind.work_of_planes)
-        shares.cut = cut_by_work(kind.work_of_planes(scene, nullptr), ranks);
+        shares.cut = load_balanced_cut(kind.work_of_planes(scene, nullptr), ranks);
     else
         shares.cut = cut_of(planes_of(scene), ranks);
     if (shares.cut.empty())
-        shares.by_all = "all of it";
-    else if (kind.by_all)
-        shares.by_all = kind.by_all(scene, shares.cut);
+        shares.replicated_work = "all of it";
+    else if (kind.replicated_work)
+        shares.replicated_work = kind.replicated_work(scene, shares.cut);
     return shares;
 }
 

@@ -17,7 +17,7 @@ namespace weir::sim {
 namespace {
 
 /// Relative tolerance: the error of sampled volumes and particle lattices.
-constexpr real told_apart = 0.02;
+constexpr real distinguishable = 0.02;
 constexpr int moments = 64;
 
 /// Sample points of the whole domain, and the volume fraction of each that lies inside a surface.
@@ -72,7 +72,7 @@ void require(const scene::Scene& scene) {
         const real t = scene.number("time.end") * k / moments;
         solids.set_time(t);
         const real room = samples.volume([&](const Vec<D>& x) { return 1 - samples.inside(solids.distance(x)); });
-        if (room < (1 - told_apart) * liquid)
+        if (room < (1 - distinguishable) * liquid)
             scene.refuse(
                 path,
                 fmt::format(

@@ -11,8 +11,8 @@ namespace weir::sim {
 /// The part of each rank at the start of a scene, as text and as an argument for solvers.
 struct Shares {
     scene::Shared shared = scene::Shared::by_planes;
-    Cut cut{};             // of planes; empty for one rank, for shared particles (their partition moves with them), and for replicated work
-    std::string by_all{};  // passes of a step with replicated work
+    Cut cut{};  // of planes; empty for one rank, for shared particles (their partition moves with them), and for replicated work
+    std::string replicated_work{};  // passes of a step with replicated work
     bool nothing_shared() const { return shared == scene::Shared::by_planes && cut.empty(); }
 };
 Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());

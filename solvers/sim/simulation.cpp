@@ -1,17 +1,17 @@
 #include "sim/simulation.hpp"
 
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "core/parallel.hpp"
 #include "core/thread_count.hpp"
 #include "geometry/mesh/mesh.hpp"
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
-#include "sim/asked_times.hpp"
 #include "sim/extremes.hpp"
 #include "sim/finite.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
+#include "sim/requested_times.hpp"
 #include "sim/room.hpp"
 #include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
@@ -107,13 +107,13 @@ long cells_of(const scene::Scene& scene) {
 
 /// Number of threads that the cells of a scene have enough work for.
 int threads_for(const scene::Scene& scene) {
-    const ThreadsWorth worth(cells_of(scene));
+    const ProblemSizeScope size(cells_of(scene));
     return weir::threads();
 }
 
 std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Cut& cut) {
-    const ThreadsWorth worth(cells_of(scene));
-    const CutSo so(cut);
+    const ProblemSizeScope size(cells_of(scene));
+    const PartitionScope partition(cut);
     return kind.make(scene);
 }
 
@@ -171,7 +171,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       threads_(threads_for(scene_)) {
     read_times();
     if (scene_.has("output.fields")) {
-        const auto parts = static_cast<const Solver&>(*solver_).show_in_parts();
+        const auto parts = static_cast<const Solver&>(*solver_).distributed_view();
         check_output_fields(scene_, solver_->fields());
     }
     refuse_ignored(scene_, kind_);
@@ -211,28 +211,28 @@ void Simulation::steer(const scene::Override& change) {
 
 /// Replaces the solver by one that has the same state.
 void Simulation::replace(std::unique_ptr<Solver> solver) {
-    if (const Hand* hand = solver_->hand()) solver->hand()->keys = hand->keys;
+    if (const BrushForcing* forcing = solver_->brush()) solver->brush()->keys = forcing->keys;
     solver->passes().reset();
     for (const Pass& pass : static_cast<const Solver&>(*solver_).passes().list()) solver->passes().add(pass.name, pass.seconds, pass.calls);
     solver_ = std::move(solver);
 }
 
 /// Empty where the present partition is good enough.
-Cut Simulation::better_cut(const Checkpoint& state) const {
+Cut Simulation::balanced_cut(const Checkpoint& state) const {
     const Cut& present = shares_->cut;
     if (present.empty() || !kind_.work_of_planes) return {};
     constexpr double worth = 0.9;  // the solver is rebuilt for it, which takes as long as some steps
     const auto work = kind_.work_of_planes(scene_, &state);
     if (static_cast<int>(work.size()) != present.planes()) return {};  // of another scene, which the solver rejects
-    Cut cut = cut_by_work(work, present.ranks());
+    Cut cut = load_balanced_cut(work, present.ranks());
     const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
     return most(cut) < worth * most(present) ? cut : Cut{};
 }
 
-bool Simulation::asks_for_other_cut(const Checkpoint& state) const { return !better_cut(state).empty(); }
+bool Simulation::needs_repartition(const Checkpoint& state) const { return !balanced_cut(state).empty(); }
 
-void Simulation::cut_anew(const Checkpoint& state) {
-    Cut cut = better_cut(state);
+void Simulation::repartition(const Checkpoint& state) {
+    Cut cut = balanced_cut(state);
     if (cut.empty()) return;
     probes_.keep(*solver_);
     std::unique_ptr<Solver> solver = make_solver(scene_, kind_, cut);
@@ -304,7 +304,7 @@ StepReport Simulation::step_towards(real target) {
         const real wanted = wanted_dt(target);
         const StepLimit stable = limit();
         const real dt = within_limit(wanted, stable);
-        if (dt < wanted && !split_) tell_of_parts(wanted, dt, stable);
+        if (dt < wanted && !split_) warn_of_parts(wanted, dt, stable);
         probes_.before_step(*solver_, dt);
         report = solver_->step(dt);
         sim::check_finite(solver_->checks_itself() ? FieldSet{} : fields(), report);
@@ -316,7 +316,7 @@ StepReport Simulation::step_towards(real target) {
     ++steps_;
     if (steady_rate_ > 0) steady_ = sim::change_and_keep(fields(), last_velocity_) <= steady_rate_ * report.dt;
     choose_threads(clock.elapsed());
-    if (const std::string concern = solver_->concern(); !concern.empty()) tell_concern(concern);
+    if (const std::string concern = solver_->concern(); !concern.empty()) warn_of_concern(concern);
     at_frame_ = reached(frame_target) || steady_;
     if (at_frame_) ++frame_;
     measure();
@@ -347,7 +347,7 @@ real Simulation::next_target() const {
 
 /// The same without the end of the scene.
 real Simulation::next_target_but_end() const {
-    real target = meets_frames_ && every_ < infinity ? sim::asked_time(every_, sim::first_after(every_, time())) : infinity;
+    real target = meets_frames_ && every_ < infinity ? sim::requested_time(every_, sim::first_after(every_, time())) : infinity;
     for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
         if (!reached(changes_[at].time)) return std::min(target, changes_[at].time);
     return target;
@@ -362,7 +362,7 @@ bool Simulation::shortens_for_end() const {
 /// The next frame, or the end where that comes first. A frame that rounding puts just before the end equals the end.
 real Simulation::next_frame() const {
     if (every_ == infinity || finished()) return end_;
-    const real frame = sim::asked_time(every_, sim::first_after(every_, time()));
+    const real frame = sim::requested_time(every_, sim::first_after(every_, time()));
     return frame >= end_ - 1e-9 * every_ ? end_ : frame;
 }
 
@@ -396,14 +396,14 @@ real Simulation::within_limit(real dt, const StepLimit& limit) const {
 }
 
 /// Reports only the first concern of each kind; texts that differ only in their numbers are of the same kind.
-void Simulation::tell_concern(const std::string& concern) {
+void Simulation::warn_of_concern(const std::string& concern) {
     const std::string kind = concern.substr(0, concern.find_first_of("0123456789"));
     if (std::find(concerns_.begin(), concerns_.end(), kind) != concerns_.end()) return;
     concerns_.push_back(kind);
     warnings_.push_back(scene_.file() + ": " + concern);
 }
 
-void Simulation::tell_of_parts(real wanted, real dt, const StepLimit& limit) {
+void Simulation::warn_of_parts(real wanted, real dt, const StepLimit& limit) {
     split_ = true;
     const char* key = scene_.has("time.dt") ? "time.dt" : "time.cfl";
     warnings_.push_back(
@@ -443,7 +443,7 @@ void Simulation::restore(const Checkpoint& from) {
     try {
         require_same_domain(scene_, from);
         resume_changes(from);
-        if (Cut cut = better_cut(from); !cut.empty()) {
+        if (Cut cut = balanced_cut(from); !cut.empty()) {
             solver_ = make_solver(scene_, kind_, cut);
             shares_->cut = std::move(cut);
         }

@@ -111,7 +111,7 @@ public:
     bool has_frames() const { return every_ < infinity; }  // besides the first and the last
     std::int64_t frame() const { return frame_; }
 
-    /// Threads of the next step: the number that was set, otherwise at most as many as the scene has work for (ThreadsWorth), chosen by
+    /// Threads of the next step: the number that was set, otherwise at most as many as the scene has work for (ProblemSizeScope), chosen by
     /// measured times (ThreadChoice).
     int threads() const;
     FieldSet fields() const { return static_cast<const Solver&>(*solver_).fields(); }
@@ -122,10 +122,10 @@ public:
     const sim::Shares& shares() const { return *shares_; }
     /// Returns whether a state, as written by save() or read from a file, should be repartitioned: the rank with most work would have a
     /// tenth less. The call is collective.
-    bool asks_for_other_cut(const Checkpoint& state) const;
+    bool needs_repartition(const Checkpoint& state) const;
     /// Repartitions the planes for load balance, from a state in a file that all ranks read. The call is collective and changes no bit of
     /// the solution.
-    void cut_anew(const Checkpoint& state);
+    void repartition(const Checkpoint& state);
     /// Samples of the scene's probes up to now.
     const std::vector<ProbeSeries>& probes() const { return probes_.series(); }
     const ProbeSeries& probe_series(std::string_view name) const { return probes_.series(name); }
@@ -145,7 +145,7 @@ private:
     void read_times();
     void steer(const scene::Override& change);
     void meet_changes();
-    Cut better_cut(const Checkpoint& state) const;
+    Cut balanced_cut(const Checkpoint& state) const;
     void replace(std::unique_ptr<Solver> solver);
     void resume_changes(const Checkpoint& from);
     real wanted_dt(real target) const;
@@ -153,8 +153,8 @@ private:
     [[noreturn]] void refuse_step(const char* which, real dt) const;
     StepLimit limit() const { return guard_ ? solver_->stable_dt() : StepLimit{}; }
     real within_limit(real dt, const StepLimit& limit) const;
-    void tell_concern(const std::string& concern);
-    void tell_of_parts(real wanted, real dt, const StepLimit& limit);
+    void warn_of_concern(const std::string& concern);
+    void warn_of_parts(real wanted, real dt, const StepLimit& limit);
     StepReport step_towards(real target);
     void choose_threads(const sim::StepTime& step);
     void measure();

@@ -87,15 +87,15 @@ void ThreadChoice::watch(const StepTime& step) {
 }
 
 std::string ThreadChoice::warning() {
-    if (slowdown_ > hopeless && !told_slow_) {
-        told_slow_ = true;
+    if (slowdown_ > hopeless && !warned_slow_) {
+        warned_slow_ = true;
         return fmt::format(
             "a step on {} threads takes {:.1f} times as long as on one, because other processes are busy: the run continues with one "
             "thread and tries again later (--threads N fixes N)",
             most_, slowdown_);
     }
-    if (waiting_ == steps_of_waiting && !told_waiting_) {
-        told_waiting_ = true;
+    if (waiting_ == steps_of_waiting && !warned_waiting_) {
+        warned_waiting_ = true;
         return fmt::format(
             "steps on {} threads spend more time waiting than computing ({:.3g} of {:.3g} ms), because other processes are busy: --threads "
             "1 may be faster",

@@ -77,7 +77,7 @@ private:
     int waiting_ = 0;                // steps in a row that waited longer than they worked
     double wall_ = 0, cpu_ = 0;      // of those [s]
     double slowdown_ = 0;            // step on most_ threads over one on one thread, when one was chosen
-    bool told_slow_ = false, told_waiting_ = false;
+    bool warned_slow_ = false, warned_waiting_ = false;
 };
 
 }  // namespace weir::sim

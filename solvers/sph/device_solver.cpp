@@ -58,7 +58,7 @@ DeviceSphSolver<D>::DeviceSphSolver(const Options& options, const scene::Scene& 
 /// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
 template <int D>
 StepReport DeviceSphSolver<D>::step(real dt) {
-    fluid_.let_in(dt);
+    fluid_.add_inflow(dt);
     rho_rest_ = rest_density_.at(fluid_.time());
     fluid_.find_neighbours(fluid_.x);
     fluid_.expand();
@@ -68,13 +68,13 @@ StepReport DeviceSphSolver<D>::step(real dt) {
     if (bodies_) meet_bodies(dt);                // and on bodies
     kick(dt);
     if (bodies_) carry_bodies(dt);
-    fluid_.hold();                                   // frozen particles
+    fluid_.stop_frozen();                            // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back();  // by particles inside bodies
-    fluid_.finish(dt);         // XSPH, vorticity
-    fluid_.hold_again();
+    if (bodies_) apply_reaction();  // by particles inside bodies
+    fluid_.finish(dt);              // XSPH, vorticity
+    fluid_.stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     const real speed = this->find_speed();
     const auto c = fluid_.reduce("compressions", {fluid_.count(), rho_rest_, fluid_.order, fluid_.rests, fluid_.density, fluid_.parts()});
@@ -131,15 +131,15 @@ template <int D>
 void DeviceSphSolver<D>::carry_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     bodies_->exchange(fluid_.domain(), dt, true);
-    give_back();
+    apply_reaction();
     fluid_.place_solids();
 }
 
 template <int D>
-void DeviceSphSolver<D>::give_back() {
+void DeviceSphSolver<D>::apply_reaction() {
     if (bodies_->meetings().empty()) return;
     Fluid<D>& state = fluid_.borrow();
-    sph::give_back(*bodies_, state);
+    sph::apply_reaction(*bodies_, state);
     fluid_.send(state.v, fluid_.v);
 }
 
@@ -174,7 +174,7 @@ void DeviceSphSolver<D>::advance_densities(real dt) {
 template <int D>
 void DeviceSphSolver<D>::drift(real dt) {
     fluid_.pass_time(dt);
-    fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.clamps, fluid_.x, fluid_.v});
+    fluid_.run("drift", {fluid_.count(), fluid_.stride(), fluid_.state_params, fluid_.poses, dt, fluid_.corrections, fluid_.x, fluid_.v});
     fluid_.carry_ice(dt);
 }
 

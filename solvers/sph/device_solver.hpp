@@ -24,7 +24,7 @@ private:
     void find_forces();
     void meet_bodies(real dt);
     void carry_bodies(real dt);
-    void give_back();
+    void apply_reaction();
     void move_bodies(real dt);
     void kick(real dt);
     void advance_densities(real dt);

@@ -116,7 +116,7 @@ scene::SolverKind kind() {
         particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"time.cfl"}}, {surface()}),
         particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
         particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"}),
-        particles::refuse_over_ranks,
+        particles::refuse_in_parallel,
         scene::Shared::by_particles,
         {},
         {},

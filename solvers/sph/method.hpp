@@ -66,8 +66,8 @@ protected:
     /// After the drift of particles: moves pieces of ice as bodies.
     void carry_ice(real dt) {
         if (!this->ice_moves()) return;
-        this->ice_->fly(dt);
-        this->ice_->arrive(this->fluid_, dt);
+        this->ice_->advance_free(dt);
+        this->ice_->finish_motion(this->fluid_, dt);
     }
     StepReport report(real dt, real speed, const Compression& c) const {
         particles::require_room(this->setting(), c.mean);

@@ -53,11 +53,11 @@ StepReport ReferenceSphSolver<D>::step(real dt) {
     find_neighbours();
     find_densities();                                // eq. 3 and 12
     kick(dt);                                        // eq. 10 and 14
-    this->hold();                                    // frozen particles
+    this->stop_frozen();                             // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) sph::move_bodies(*bodies_, fluid_, beside_bodies_, dt);
     drift(fluid_, dt);
-    if (bodies_) give_back(*bodies_, fluid_);  // by particles inside bodies
+    if (bodies_) apply_reaction(*bodies_, fluid_);  // by particles inside bodies
     this->carry_ice(dt);
     this->conduct(dt);  // only where the scene names a substance
     const real speed = speed_ = this->speed();
@@ -143,7 +143,7 @@ void ReferenceSphSolver<D>::kick(real dt) {
         Fluid<D>::put(fluid_.v, i, fluid_.velocity(i) + dt * (particles::vec_of<D>(a[static_cast<std::size_t>(i)]) + fluid_.gravity));
     if (!bodies_) return;
     bodies_->exchange(fluid_.domain, dt, true);
-    give_back(*bodies_, fluid_);
+    apply_reaction(*bodies_, fluid_);
 }
 
 /// Forces of bodies on particles, including terms that the accelerations omit.

@@ -46,7 +46,7 @@ SphSolver<D>::SphSolver(const Options& options, const scene::Scene& scene, Fluid
 /// Müller et al. 2003, section 3: density, pressure, forces; then v += dt a, x += dt v.
 template <int D>
 StepReport SphSolver<D>::step(real dt) {
-    this->pour_and_drain(dt);
+    this->apply_sources_and_sinks(dt);
     find_neighbours();
     if (!options_.continuity) find_densities();        // eq. 3
     find_pressures();                                  // eq. 12
@@ -55,14 +55,14 @@ StepReport SphSolver<D>::step(real dt) {
     effects_.apply(Stage::force, flow_, dt, passes_);  // gravity and other fields
     kick(dt);
     if (bodies_) carry_bodies(dt);
-    this->hold();                                    // frozen particles
+    this->stop_frozen();                             // frozen particles
     if (options_.continuity) advance_densities(dt);  // Colagrossi & Landrini 2003, eq. 10
     if (bodies_) move_bodies(dt);
     drift(dt);
-    if (bodies_) give_back(*bodies_, fluid_);           // by particles inside bodies
+    if (bodies_) apply_reaction(*bodies_, fluid_);      // by particles inside bodies
     effects_.apply(Stage::finish, flow_, dt, passes_);  // XSPH, vorticity
-    this->dismiss();
-    this->hold_again();
+    this->drop_ghosts();
+    this->stop_frozen_again();
     this->conduct(dt);  // only where the scene names a substance
     const auto end = this->end_step(particles::excess_of(fluid_, rho_rest_, this->vapour()), max_acceleration_);
     speed_ = end.speed, max_acceleration_ = end.acceleration;
@@ -222,7 +222,7 @@ template <int D>
 void SphSolver<D>::carry_bodies(real dt) {
     const auto timed = passes_.time("bodies");
     bodies_->exchange(fluid_.domain, dt, true);
-    give_back(*bodies_, fluid_);
+    apply_reaction(*bodies_, fluid_);
 }
 
 /// X += dt V. Particles that would end inside push the bodies.

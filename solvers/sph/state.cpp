@@ -111,7 +111,7 @@ void advance_time(particles::Fluid<D>& fluid, real dt) {
 template <int D>
 void drift(particles::Fluid<D>& fluid, int i, real dt) {
     using particles::Fluid;
-    const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = fluid.domain.kept(free, fluid.clamps);
+    const Vec<D> u = fluid.velocity(i), free = fluid.position(i) + dt * u, x = fluid.domain.kept(free, fluid.corrections);
     Vec<D> kept = u;
     for (int a = 0; a < D; ++a)
         if (x[a] != free[a]) kept[a] = (x[a] - fluid.position(i)[a]) / dt;
@@ -147,7 +147,7 @@ Vec<D> meet_body(const Options& o, const particles::plain::SphParams& p, const p
         const Vec<D> slip = solids.velocity(m.at) - fluid.velocity(i);
         const real drag = 2 * o.viscosity * plane / m.open / std::max<real>(phi, p.closest);
         by += drag * (slip - dot(slip, normal) * normal);
-        m.rub = dt * drag;
+        m.friction = dt * drag;
     }
     m.given = dt * (by + beyond);
     return beyond;
@@ -160,7 +160,7 @@ void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>
 }
 
 template <int D>
-void give_back(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid) {
+void apply_reaction(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid) {
     using particles::Fluid;
     for (const auto& m : bodies.meetings())
         if (m.body >= 0) Fluid<D>::put(fluid.v, m.particle, fluid.velocity(m.particle) + bodies.back(m));
@@ -175,8 +175,8 @@ void move_bodies(particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& flui
     bodies.end(fluid.domain, dt, dt);
 }
 
-template void give_back(const particles::BodiesInLiquid<2>&, particles::Fluid<2>&);
-template void give_back(const particles::BodiesInLiquid<3>&, particles::Fluid<3>&);
+template void apply_reaction(const particles::BodiesInLiquid<2>&, particles::Fluid<2>&);
+template void apply_reaction(const particles::BodiesInLiquid<3>&, particles::Fluid<3>&);
 template void move_bodies(particles::BodiesInLiquid<2>&, particles::Fluid<2>&, const std::vector<int>&, real);
 template void move_bodies(particles::BodiesInLiquid<3>&, particles::Fluid<3>&, const std::vector<int>&, real);
 template Vec<2> meet_body(const Options&, const particles::plain::SphParams&, const particles::Fluid<2>&, int, real, real,

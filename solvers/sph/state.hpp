@@ -83,7 +83,7 @@ void meet_bodies(const Options& options, const particles::plain::SphParams& para
 }
 /// Adds to v the part of the bodies' forces that their own change removes.
 template <int D>
-void give_back(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid);
+void apply_reaction(const particles::BodiesInLiquid<D>& bodies, particles::Fluid<D>& fluid);
 /// Finds coupling pairs with the bodies that particles would drift into.
 template <int D>
 void find_pushes(particles::BodiesInLiquid<D>& bodies, const particles::Fluid<D>& fluid, const std::vector<int>& near, real dt);

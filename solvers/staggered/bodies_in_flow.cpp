@@ -18,17 +18,17 @@ constexpr real least_mass = 1e-9, least_inertia = 1e-4;
 
 /// Limits of the partitioned coupling iterations: before the added mass is measured (one solve per degree of freedom) instead of estimated,
 /// and after that.
-constexpr int most_turns = 12, most_turns_measured = 6;
+constexpr int most_iterations = 12, most_iterations_measured = 6;
 
 /// Stop tolerance of the pressure solve in one coupling iteration, relative to the right-hand side and to the last change of the
 /// velocities.
-constexpr real first_turn = 1e-2, of_change = 1e-2;
+constexpr real first_tolerance = 1e-2, of_change = 1e-2;
 
 /// A change updates the estimate of the added mass if it exceeds the previous residual by this factor.
 constexpr real differs = 5;
 
 /// Part of the tolerance for the pressure solve where the system is monolithic: the following change of the velocities is then round-off.
-constexpr real alone = 0.9;
+constexpr real monolithic_part = 0.9;
 
 /// Largest ratio of added mass to mass for bodies in the pressure matrix, whose condition number grows with it. Lighter bodies are coupled
 /// by partitioned iterations.
@@ -39,7 +39,7 @@ constexpr real unfelt = 0.1;
 
 }  // namespace
 
-void refuse_friction_of_before(const scene::Table& viscosity, const scene::Scene& scene) {
+void refuse_explicit_friction(const scene::Table& viscosity, const scene::Scene& scene) {
     for (const auto& body : scene.root().tables("bodies"))
         if (viscosity.text("scheme") != "implicit" && body.text("slip") == "no")
             scene.refuse(
@@ -80,7 +80,7 @@ BodiesInFlow<D>::BodiesInFlow(const scene::Scene& scene)
 template <int D>
 void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solids) {
     find_cuts(s, solids);
-    for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].wet = wet_part(s, i);
+    for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].wet = liquid_fraction(s, i);
     rigid::Surroundings<D> around = bodies_.surroundings(solids.solids());
     around.reach = 1e-3 * norm(h_);
     contacts_.find(bodies_.all(), around);
@@ -88,15 +88,15 @@ void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solid
 }
 
 template <int D>
-void BodiesInFlow<D>::stick(MacState<D>& s, bool holds_closed) {
-    grip_ = std::make_unique<WallGrip<D>>();
-    grip_->holds_closed = holds_closed;
-    grip_->riders.resize(bodies_.count());
+void BodiesInFlow<D>::couple_friction(MacState<D>& s, bool holds_closed) {
+    no_slip_walls_ = std::make_unique<NoSlipWalls<D>>();
+    no_slip_walls_->holds_closed = holds_closed;
+    no_slip_walls_->bodies.resize(bodies_.count());
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
-        bodies_[i].rubbed = grip_->riders[i].sticks = bodies_[i].no_slip;
-        grip_->riders[i].held = bodies_[i].held;
+        bodies_[i].has_viscous = no_slip_walls_->bodies[i].coupled = bodies_[i].no_slip;
+        no_slip_walls_->bodies[i].held = bodies_[i].held;
     }
-    s.grip = grip_.get();
+    s.no_slip_walls = no_slip_walls_.get();
     // friction precedes the pressure solve and uses the previous pressure: initially the hydrostatic one
     for_each_cell(s.extent(), [&](const Index<D>& I) {
         if (s.cells(I) == Cell::fluid) s.p(I) = s.rho * dot(gravity_, s.u.cell_centre(I));
@@ -136,30 +136,30 @@ void BodiesInFlow<D>::continue_pressure(MacState<D>& s) const {
 /// impacts do not repeat. Torques are excluded: round bodies get none from pressure, and light bodies of other shapes have so little
 /// inertia that errors of the estimate are unstable.
 template <int D>
-void BodiesInFlow<D>::grip(const MacState<D>& s, const SolidPlacement<D>& solids, real dt) {
-    if (!grip_) return;
+void BodiesInFlow<D>::set_no_slip_walls(const MacState<D>& s, const SolidPlacement<D>& solids, real dt) {
+    if (!no_slip_walls_) return;
     find_cuts(s, solids);
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
-        Rider<D>& rider = grip_->riders[i];
-        if (!rider.sticks) continue;
+        NoSlipBody<D>& no_slip_body = no_slip_walls_->bodies[i];
+        if (!no_slip_body.coupled) continue;
         const Body<D>& body = bodies_[i];
         const rigid::Block<D> own = mass_of(i), added = mass_of_wet_surface(s, i);
-        rider.velocity = body.velocity;
-        rider.turning = 2 * s.rho * s.nu * body.moments.volume;
+        no_slip_body.velocity = body.velocity;
+        no_slip_body.turning = 2 * s.rho * s.nu * body.moments.volume;
         for (std::size_t k = 0; k < n; ++k) {
-            rider.drive[k] = k < D ? -dt * body.viscous[k] : 0;
+            no_slip_body.drive[k] = k < D ? -dt * body.viscous[k] : 0;
             for (std::size_t l = 0; l < n; ++l) {
-                rider.mass[k][l] = own[k][l] + (k < D && l < D ? added[k][l] : 0);
-                if (k < D && l < D && !body.touches) rider.drive[k] += dt * rider.mass[k][l] * gained_[i * n + l];
+                no_slip_body.mass[k][l] = own[k][l] + (k < D && l < D ? added[k][l] : 0);
+                if (k < D && l < D && !body.touches) no_slip_body.drive[k] += dt * no_slip_body.mass[k][l] * gained_[i * n + l];
             }
         }
     }
-    find_grip(s, solids, *grip_);
+    find_no_slip_walls(s, solids, *no_slip_walls_);
 }
 
 template <int D>
-void BodiesInFlow<D>::fly(SolidPlacement<D>& solids, real dt) {
-    for (auto& body : bodies_.all()) body.fly(dt, gravity_);
+void BodiesInFlow<D>::advance_free(SolidPlacement<D>& solids, real dt) {
+    for (auto& body : bodies_.all()) body.advance_free(dt, gravity_);
     bodies_.place(solids.solids());
 }
 
@@ -328,7 +328,7 @@ Twist<D> BodiesInFlow<D>::force(const MacState<D>& s, std::size_t body) const {
 
 /// The liquid volume fraction of the body's surface as resolved by the cells: the part of Σ |D| in fluid cells.
 template <int D>
-real BodiesInFlow<D>::wet_part(const MacState<D>& s, std::size_t body) const {
+real BodiesInFlow<D>::liquid_fraction(const MacState<D>& s, std::size_t body) const {
     real all = 0, wet = 0;
     for (const Cut& c : cuts_[body])
         for (std::size_t k = 0; k < D; ++k) {
@@ -425,7 +425,7 @@ template <int D>
 void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
         Body<D>& body = bodies_[i];
-        body.wet = wet ? wet_part(s, i) : 0;
+        body.wet = wet ? liquid_fraction(s, i) : 0;
         masses_[i] = mass_of(i);
         added_.see(i, body.wet > 0 ? mass_of_wet_surface(s, i) : rigid::Block<D>{});
         const Twist<D> heavy = weight(i);
@@ -435,18 +435,18 @@ void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
             next_[at] = before_[at] + (body.wet > 0 && !body.touches ? dt * gained_[at] : 0);
             heavy_[at] = dt * heavy[k];
             if (k < D) heavy_[at] += dt * (masses_[i][k][k] - body.mass) * gravity_[k];
-            if (grip_) heavy_[at] += grip_->riders[i].impulse[k];
+            if (no_slip_walls_) heavy_[at] += no_slip_walls_->bodies[i].impulse[k];
         }
     }
-    if (hand_) be_held(s, dt);
+    if (brush_forcing_) apply_grab(s, dt);
     added_.begin(masses_, free_, mobility_);
 }
 
 template <int D>
-void BodiesInFlow<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& scene) {
-    hand_ = std::move(hand);
-    for (std::size_t i = 0; i < hand_->keys.size(); ++i)
-        if (hand_->keys[i].kind == HandKind::grab && hand_->keys[i].body >= static_cast<int>(bodies_.count()))
+void BodiesInFlow<D>::follow(std::shared_ptr<BrushForcing> forcing, const scene::Scene& scene) {
+    brush_forcing_ = std::move(forcing);
+    for (std::size_t i = 0; i < brush_forcing_->keys.size(); ++i)
+        if (brush_forcing_->keys[i].kind == BrushKind::grab && brush_forcing_->keys[i].body >= static_cast<int>(bodies_.count()))
             scene.refuse("effects.hand.keyframes[" + std::to_string(i) + "].body", "there is no such body",
                          "numbers of the list bodies, from 0 to " + std::to_string(bodies_.count() - 1));
 }
@@ -454,27 +454,27 @@ void BodiesInFlow<D>::follow(std::shared_ptr<Hand> hand, const scene::Scene& sce
 /// Interactive forcing: dv/dt = rate (target − v) for the mass of the body and of the displaced liquid, implicit in v, so stable for any
 /// step. The factor of v is added to the mass.
 template <int D>
-void BodiesInFlow<D>::be_held(const MacState<D>& s, real dt) {
-    const auto brush = hand_->at<D>(s.time);
-    hold_.body = brush.kind == HandKind::grab ? brush.body : -1;
-    if (hold_.body < 0) return;
-    const auto b = static_cast<std::size_t>(hold_.body);
+void BodiesInFlow<D>::apply_grab(const MacState<D>& s, real dt) {
+    const auto brush = brush_forcing_->at<D>(s.time);
+    grab_.body = brush.kind == BrushKind::grab ? brush.body : -1;
+    if (grab_.body < 0) return;
+    const auto b = static_cast<std::size_t>(grab_.body);
     const Body<D>& body = bodies_[b];
-    hold_.weight = dt * hand_->rate * (body.mass + body.wet * rho_ * body.moments.volume);
-    hold_.target = 0.25 * hand_->rate * (brush.centre - body.at);
+    grab_.weight = dt * brush_forcing_->rate * (body.mass + body.wet * rho_ * body.moments.volume);
+    grab_.target = 0.25 * brush_forcing_->rate * (brush.centre - body.at);
     for (std::size_t a = 0; a < D; ++a) {
-        real& target = hold_.target[static_cast<int>(a)];
+        real& target = grab_.target[static_cast<int>(a)];
         target = std::clamp(target, -h_[static_cast<int>(a)] / dt, h_[static_cast<int>(a)] / dt);
-        masses_[b][a][a] += hold_.weight;
-        heavy_[b * n + a] += hold_.weight * (target - before_[b * n + a]);
+        masses_[b][a][a] += grab_.weight;
+        heavy_[b * n + a] += grab_.weight * (target - before_[b * n + a]);
     }
 }
 
 template <int D>
-void BodiesInFlow<D>::tell_hand() {
-    for (int a = 0; a < D && hold_.body >= 0; ++a)
-        if (const std::size_t i = static_cast<std::size_t>(hold_.body) * n + static_cast<std::size_t>(a); free_[i])
-            hand_->impulse[a] += hold_.weight * (hold_.target[a] - velocity_[i]);
+void BodiesInFlow<D>::record_brush_impulse() {
+    for (int a = 0; a < D && grab_.body >= 0; ++a)
+        if (const std::size_t i = static_cast<std::size_t>(grab_.body) * n + static_cast<std::size_t>(a); free_[i])
+            brush_forcing_->impulse[a] += grab_.weight * (grab_.target[a] - velocity_[i]);
 }
 
 /// The impulses of the pressure in a time dt.
@@ -641,10 +641,10 @@ real BodiesInFlow<D>::square_of(const MacState<D>& s, const Grid<real, D>& b) co
 /// One pressure solve to `tolerance`, relative to ‖b‖ of the extrapolated velocities. If the solve with bodies in the matrix fails, they
 /// switch to partitioned coupling.
 template <int D>
-void BodiesInFlow<D>::turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b) {
+void BodiesInFlow<D>::coupling_iteration(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b) {
     const poisson::Report* report = nullptr;
     if (!matrix_.blocks.empty()) {
-        solver.aim(tolerance * std::min(1.0, whole_ / std::sqrt(std::max(b_squared_, whole_ * whole_ * 1e-4))));
+        solver.set_tolerance(tolerance * std::min(1.0, whole_ / std::sqrt(std::max(b_squared_, whole_ * whole_ * 1e-4))));
         report = solver.solve(s.p, b, matrix_);
         if (!report) {
             leave_matrix();
@@ -652,14 +652,14 @@ void BodiesInFlow<D>::turn(MacState<D>& s, poisson::Solver<D>& solver, real tole
         }
     }
     if (!report) {
-        solver.aim(tolerance);
+        solver.set_tolerance(tolerance);
         report = &solver.solve(s.p, b);
     }
     const int iterations = report_.iterations + report->iterations;
     const real first = report_.iterations == 0 ? report->residual_before : report_.residual_before;
     report_ = *report;
     report_.iterations = iterations, report_.residual_before = first;
-    ++turns_;
+    ++coupling_iterations_;
 }
 
 template <int D>
@@ -688,12 +688,12 @@ void BodiesInFlow<D>::take_velocities(MacState<D>& s, SolidPlacement<D>& placeme
             gained_[i * n + k] = (velocity_[i * n + k] - before_[i * n + k]) / dt;
         }
         body.force = force(s, i);
-        for (std::size_t k = 0; grip_ && k < n; ++k) {
-            body.viscous[k] = grip_->riders[i].impulse[k] / dt;
+        for (std::size_t k = 0; no_slip_walls_ && k < n; ++k) {
+            body.viscous[k] = no_slip_walls_->bodies[i].impulse[k] / dt;
             body.force[k] += body.viscous[k];
         }
     }
-    if (hand_) tell_hand();
+    if (brush_forcing_) record_brush_impulse();
     bodies_.place(placement.solids());
     set_velocities(s);
 }
@@ -704,20 +704,21 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
     find_cuts(s, placement);
     begin(s, solver != nullptr, dt);
     const bool coupled = std::any_of(bodies_.all().begin(), bodies_.all().end(), [](const Body<D>& body) { return body.wet > 0; });
-    turns_ = report_.iterations = 0;
+    coupling_iterations_ = report_.iterations = 0;
     leave_matrix();
     adopt(s, dt, b);
     b_squared_ = coupled ? square_of(s, *b) : 0, whole_ = std::sqrt(b_squared_);
     const real enough = coupled ? 0.5 * tolerance : tolerance;
-    real aim = coupled ? std::max(enough, first_turn) : enough, left = 0, change = 0;  // left: residual before the last change
+    real solve_tolerance = coupled ? std::max(enough, first_tolerance) : enough, left = 0,
+         change = 0;  // left: residual before the last change
     if (coupled && join_matrix(s)) {
-        if (fluid_decides(placement.solids(), dt)) aim = alone * tolerance;
+        if (fluid_decides(placement.solids(), dt)) solve_tolerance = monolithic_part * tolerance;
         expect_others(s, dt);
         adopt(s, dt, b);
     }
     bool measured = false, again = false;
-    for (int count = 0, last = most_turns;; ++count) {
-        if (solver) turn(s, *solver, aim, dt, *b);
+    for (int count = 0, last = most_iterations;; ++count) {
+        if (solver) coupling_iteration(s, *solver, solve_tolerance, dt, *b);
         follow_pressure(s, dt);
         std::swap(met_, last_);
         pushed(s, met_, dt);
@@ -726,26 +727,27 @@ const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>&
         move_under_forces();
         touch(placement.solids(), dt, count == 0);
         const real added = adopt(s, dt, b);
-        left = aim, change = added == 0 ? 0 : added / whole_;
-        if (!coupled || aim + change <= tolerance) break;
+        left = solve_tolerance, change = added == 0 ? 0 : added / whole_;
+        if (!coupled || solve_tolerance + change <= tolerance) break;
         again = !measured && count > 0 && change > std::max(changed, 1.0);  // the estimate is so poor that the iteration diverges
         if (again) {
             next_ = before_;
             std::fill(others_.begin(), others_.end(), 0.0);
             change = std::max(adopt(s, dt, b) / whole_, enough);
         }
-        if (!measured && (again || count == last)) measured = true, last = count + most_turns_measured, measure_added_mass(s, *solver);
+        if (!measured && (again || count == last)) measured = true, last = count + most_iterations_measured, measure_added_mass(s, *solver);
         if (measured && count == last) break;
-        aim = std::max(enough, of_change * std::min(change, 1.0));
+        solve_tolerance = std::max(enough, of_change * std::min(change, 1.0));
     }
     take_velocities(s, placement, dt);
-    if (solver) solver->aim(tolerance);
+    if (solver) solver->set_tolerance(tolerance);
     return report_;
 }
 
 template <int D>
 std::size_t BodiesInFlow<D>::bytes() const {
-    std::size_t total = (grip_ ? grip_->bytes() : 0) + bodies_.bytes() + (rhs_.size() + phi_.size()) * sizeof(real) + added_.bytes();
+    std::size_t total =
+        (no_slip_walls_ ? no_slip_walls_->bytes() : 0) + bodies_.bytes() + (rhs_.size() + phi_.size()) * sizeof(real) + added_.bytes();
     for (const auto& faces : faces_) total += faces.capacity() * sizeof(Face);
     for (const auto& cuts : cuts_) total += cuts.capacity() * sizeof(Cut);
     total += mobility_.entries.capacity() * sizeof(real) + masses_.capacity() * sizeof(rigid::Block<D>) + free_.size();

@@ -11,13 +11,13 @@
 // velocities, so all iterations together cost little more than one solve. In a cut cell the pressure is known at the cell's centre only; F
 // extrapolates it to the wall by the hydrostatic gradient, so a flat bottom also floats between cell layers.
 #pragma once
-#include "core/hand.hpp"
+#include "core/brush.hpp"
 #include "poisson/poisson.hpp"
 #include "rigid/added_mass.hpp"
 #include "rigid/bodies.hpp"
+#include "staggered/no_slip_walls.hpp"
 #include "staggered/solid_faces.hpp"
 #include "staggered/state.hpp"
-#include "staggered/wall_grip.hpp"
 
 #include <memory>
 #include <vector>
@@ -25,7 +25,7 @@
 namespace weir::staggered {
 
 /// Rejects explicit friction where a scene's fluid has no-slip bodies: their friction is implicit.
-void refuse_friction_of_before(const scene::Table& viscosity, const scene::Scene& scene);
+void refuse_explicit_friction(const scene::Table& viscosity, const scene::Scene& scene);
 
 template <int D>
 class BodiesInFlow {
@@ -38,20 +38,20 @@ public:
 
     const rigid::Bodies<D>& bodies() const { return bodies_; }
     /// Enables interactive forcing of the bodies; rejects keyframes with a body index out of range.
-    void follow(std::shared_ptr<Hand> hand, const scene::Scene& scene);
+    void follow(std::shared_ptr<BrushForcing> forcing, const scene::Scene& scene);
     /// Initializes the wet parts of the bodies at t = 0.
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
-    /// Makes the bodies with no slip couple to viscosity; `holds_closed`: see WallGrip.
-    void stick(MacState<D>& s, bool holds_closed);
-    /// Before fly(): fills the cells and faces that bodies are leaving with the velocity of the neighbouring fluid, after free fall for a
-    /// time dt.
+    /// Makes the bodies with no slip couple to viscosity; `holds_closed`: see NoSlipWalls.
+    void couple_friction(MacState<D>& s, bool holds_closed);
+    /// Before advance_free(): fills the cells and faces that bodies are leaving with the velocity of the neighbouring fluid, after free
+    /// fall for a time dt.
     void leave(MacState<D>& s, real dt) const;
     /// Extrapolates the pressure into cells without fluid, from their neighbours by the hydrostatic gradient.
     void continue_pressure(MacState<D>& s) const;
     /// Finds the no-slip wall links, and estimates the bodies' motion for the friction of a step dt.
-    void grip(const MacState<D>& s, const SolidPlacement<D>& solids, real dt);
+    void set_no_slip_walls(const MacState<D>& s, const SolidPlacement<D>& solids, real dt);
     /// Moves the bodies for a time dt along their velocities.
-    void fly(SolidPlacement<D>& solids, real dt);
+    void advance_free(SolidPlacement<D>& solids, real dt);
     /// Solves for the pressure s.p and the velocities of the bodies: A p = b plus the contribution of their velocities; on entry b contains
     /// that of the previous velocities. solver nullptr: there is no fluid.
     const poisson::Report& solve(MacState<D>& s, SolidPlacement<D>& solids, real dt, poisson::Solver<D>* solver, real tolerance,
@@ -64,7 +64,7 @@ public:
 
     const Vec<D>& gravity() const { return gravity_; }
     /// Pressure solves of the last step, for tests and studies.
-    int turns() const { return turns_; }
+    int coupling_iterations() const { return coupling_iterations_; }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from, SolidPlacement<D>& solids);
     std::size_t bytes() const;
@@ -92,13 +92,13 @@ private:
     void scatter(std::size_t body, const rigid::Twist<D>& velocity, real scale, Grid<real, D>& to) const;
     rigid::Twist<D> push(std::size_t body, const Grid<real, D>& p) const;
     rigid::Twist<D> force(const MacState<D>& s, std::size_t body) const;
-    real wet_part(const MacState<D>& s, std::size_t body) const;
+    real liquid_fraction(const MacState<D>& s, std::size_t body) const;
     rigid::Twist<D> weight(std::size_t body) const;
     rigid::Block<D> mass_of(std::size_t body) const;
     rigid::Block<D> mass_of_wet_surface(const MacState<D>& s, std::size_t body) const;
     void begin(const MacState<D>& s, bool wet, real dt);
-    void be_held(const MacState<D>& s, real dt);
-    void tell_hand();
+    void apply_grab(const MacState<D>& s, real dt);
+    void record_brush_impulse();
     void measure_added_mass(const MacState<D>& s, poisson::Solver<D>& solver);
     void pushed(const MacState<D>& s, std::vector<real>& impulse, real dt) const;
     void learn();
@@ -114,7 +114,7 @@ private:
     real square_of(const MacState<D>& s, const Grid<real, D>& b) const;
     real adopt(const MacState<D>& s, real dt, Grid<real, D>* b);
     void take_velocities(MacState<D>& s, SolidPlacement<D>& placement, real dt);
-    void turn(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b);
+    void coupling_iteration(MacState<D>& s, poisson::Solver<D>& solver, real tolerance, real dt, Grid<real, D>& b);
     /// f(list) for each list with one entry per degree of freedom.
     static void for_each_list(auto& self, auto&& f) {
         for (auto* list : {&self.velocity_, &self.next_, &self.before_, &self.gained_, &self.heavy_, &self.met_, &self.last_, &self.change_,
@@ -123,7 +123,7 @@ private:
     }
 
     rigid::Bodies<D> bodies_;
-    std::unique_ptr<WallGrip<D>> grip_;  // nullptr: no body has no slip
+    std::unique_ptr<NoSlipWalls<D>> no_slip_walls_;  // nullptr: no body has no slip
     rigid::Contacts<D> contacts_;
     Vec<D> gravity_{};
     real rho_ = 1, cell_ = 0, h2_ = 0;
@@ -145,16 +145,16 @@ private:
     std::vector<char> joined_;              // per body: whether it is part of the pressure matrix
     std::vector<rigid::Block<D>> inverse_;  // inverse masses of those
     poisson::LowRank matrix_;
-    real b_squared_ = 0, whole_ = 0;  // ‖b‖² now; ‖b‖ with the extrapolated velocities
-    std::shared_ptr<Hand> hand_;      // nullptr: no interactive forcing
+    real b_squared_ = 0, whole_ = 0;               // ‖b‖² now; ‖b‖ with the extrapolated velocities
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr: no interactive forcing
     /// The body that is grabbed in this step: the impulse is weight (target − V).
     struct Hold {
         int body = -1;
         real weight = 0;
         Vec<D> target{};
-    } hold_;
+    } grab_;
     poisson::Report report_;
-    int turns_ = 0;
+    int coupling_iterations_ = 0;
 };
 
 }  // namespace weir::staggered

@@ -15,7 +15,7 @@ using poisson::Cell;
 namespace {
 
 /// Relative to the swept volume: smaller growth is round-off or the error of face fractions.
-constexpr real told_apart = 1e-3;
+constexpr real distinguishable = 1e-3;
 
 /// The boundary of one cell's fluid.
 template <int D>
@@ -87,7 +87,7 @@ Squeezed<D> find_in_all(const MacState<D>& s) {
     Squeezed<D> region;
     if (sum([](const Around<D>& c) { return c.open ? 1.0 : 0.0; }) > 0) return region;
     const real growth = sum([](const Around<D>&c) { return c.growth; }), swept = sum([](const Around<D>&c) { return c.swept; });
-    if (!(std::abs(growth) > told_apart * swept)) return region;
+    if (!(std::abs(growth) > distinguishable * swept)) return region;
     const real cells = sum([](const Around<D>&) { return 1.0; });
     region.growth = growth, region.cells = static_cast<std::size_t>(cells), region.volume = cells * s.u.cell_volume();
     for (int a = 0; a < D; ++a) region.middle[a] = s.u.origin[a] + 0.5 * s.u.h[a] * s.u.cells[a];
@@ -98,7 +98,7 @@ Squeezed<D> find_in_all(const MacState<D>& s) {
 
 template <int D>
 Squeezed<D> find_squeezed(const MacState<D>& s, const geometry::Solids<D>& solids) {
-    if (over_ranks()) return find_in_all(s);
+    if (is_distributed()) return find_in_all(s);
     std::vector<char> seen(s.cells.size(), 0);
     std::vector<std::size_t> stack;
     std::size_t fluid = 0;
@@ -123,7 +123,7 @@ Squeezed<D> find_squeezed(const MacState<D>& s, const geometry::Solids<D>& solid
                     stack.push_back(static_cast<std::size_t>(next));
                 }
         }
-        if (open || 100 * region.cells <= fluid || !(std::abs(region.growth) > told_apart * swept)) continue;
+        if (open || 100 * region.cells <= fluid || !(std::abs(region.growth) > distinguishable * swept)) continue;
         if (std::abs(region.growth) <= std::abs(worst.growth)) continue;
         worst = region;
     }
@@ -143,7 +143,7 @@ std::string text_of(const Squeezed<D>& region) {
 }
 
 template <int D>
-bool move_as_told(const geometry::Solids<D>& solids) {
+bool move_as_prescribed(const geometry::Solids<D>& solids) {
     for (std::size_t i = 0; i < solids.count(); ++i)
         if (solids[i].motion.moves()) return true;
     return false;
@@ -153,7 +153,7 @@ bool move_as_told(const geometry::Solids<D>& solids) {
 template <int D>
 void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence) {
     constexpr real part = 1e-5;
-    if (!move_as_told(solids.solids())) return;
+    if (!move_as_prescribed(solids.solids())) return;
     if (const real rate = solids.max_rate(s); !(rate > 0 && divergence > part * rate)) return;
     const Squeezed<D> region = find_squeezed(s, solids.solids());
     if (!region.any()) return;
@@ -164,7 +164,7 @@ void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real di
 #define WEIR_INSTANTIATE(D)                                                             \
     template Squeezed<D> find_squeezed(const MacState<D>&, const geometry::Solids<D>&); \
     template std::string text_of(const Squeezed<D>&);                                   \
-    template bool move_as_told(const geometry::Solids<D>&);                             \
+    template bool move_as_prescribed(const geometry::Solids<D>&);                       \
     template void require_room(const MacState<D>&, const SolidPlacement<D>&, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

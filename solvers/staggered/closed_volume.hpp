@@ -31,7 +31,7 @@ std::string text_of(const Squeezed<D>& region);
 
 /// Returns whether any solid has a prescribed motion; free bodies adapt theirs.
 template <int D>
-bool move_as_told(const geometry::Solids<D>& solids);
+bool move_as_prescribed(const geometry::Solids<D>& solids);
 
 /// Throws NumericalFailure where there is such a region and a step has left a `divergence` [1/s] that it may have caused.
 template <int D>

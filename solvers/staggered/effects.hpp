@@ -1,8 +1,8 @@
 // Effects on the staggered grid. A kind is a schema and a factory; a solver is a list of kinds. One registration serves the scene's schema
 // and the solver; an effect that no scene names allocates nothing.
 #pragma once
+#include "core/brush.hpp"
 #include "core/effects.hpp"
-#include "core/hand.hpp"
 #include "scene/scene.hpp"
 #include "staggered/state.hpp"
 
@@ -35,10 +35,10 @@ Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& 
 EffectKind gravity();
 
 /// The kinds of interactive forcing in this scene: heat needs a substance, grab needs bodies.
-std::initializer_list<HandKind> kinds_of_hand(const scene::Scene& scene);
-/// Interactive forcing (geometry/hand.hpp), applied at this stage.
+std::initializer_list<BrushKind> kinds_of_brush(const scene::Scene& scene);
+/// Interactive forcing (geometry/brush.hpp), applied at this stage.
 template <int D>
-std::unique_ptr<MacEffect<D>> hand_effect(std::shared_ptr<Hand> hand, Stage stage);
+std::unique_ptr<MacEffect<D>> brush_effect(std::shared_ptr<BrushForcing> forcing, Stage stage);
 
 /// Registers the two instantiations of one template.
 template <template <int> class E>

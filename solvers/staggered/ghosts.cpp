@@ -163,10 +163,10 @@ void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane) {
 
 namespace {
 
-int depth(int deep) { return deep > 0 ? deep : detail::own_share.reach; }
+int depth(int ghost_planes) { return ghost_planes > 0 ? ghost_planes : detail::own_share.reach; }
 
-void refresh_all(std::span<const Planes> planes, bool ring, int deep) {
-    slabs().refresh(*detail::own_share.cut, planes, depth(deep), ring);
+void refresh_all(std::span<const Planes> planes, bool ring, int ghost_planes) {
+    slabs().refresh(*detail::own_share.cut, planes, depth(ghost_planes), ring);
 }
 template <int D>
 bool repeats(const Boundary<D>& boundary) {
@@ -188,34 +188,34 @@ void fill_ends(Padded<D>& q, const Boundary<D>& boundary) {
 }  // namespace
 
 template <int D>
-void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep) {
-    if (!over_ranks()) return;
-    q.open(depth(deep), repeats(boundary));
+void refresh(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes) {
+    if (!is_distributed()) return;
+    q.open(depth(ghost_planes), repeats(boundary));
     const Planes planes = q.planes();
-    refresh_all(std::span(&planes, 1), repeats(boundary), deep);
+    refresh_all(std::span(&planes, 1), repeats(boundary), ghost_planes);
 }
 
 template <int D>
-void refresh(const std::vector<WithBoundary<D>>& list, int deep) {
-    if (!over_ranks() || list.empty()) return;
+void refresh(const std::vector<WithBoundary<D>>& list, int ghost_planes) {
+    if (!is_distributed() || list.empty()) return;
     thread_local std::vector<Planes> planes;
     planes.clear();
     for (const auto& one : list) {
-        one.values->open(depth(deep), repeats(*one.boundary));
+        one.values->open(depth(ghost_planes), repeats(*one.boundary));
         planes.push_back(one.values->planes());
     }
-    refresh_all(planes, repeats(*list[0].boundary), deep);
+    refresh_all(planes, repeats(*list[0].boundary), ghost_planes);
 }
 
 template <int D>
-void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep) {
-    refresh(q, boundary, deep);
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes) {
+    refresh(q, boundary, ghost_planes);
     fill_ends(q, boundary);
 }
 
 template <int D>
-void fill_end_planes(const std::vector<WithBoundary<D>>& list, int deep) {
-    refresh(list, deep);
+void fill_end_planes(const std::vector<WithBoundary<D>>& list, int ghost_planes) {
+    refresh(list, ghost_planes);
     for (const auto& one : list) fill_ends(*one.values, *one.boundary);
 }
 
@@ -246,9 +246,9 @@ real fill_planes_and_measure(Padded<D>& to, const Grid<real, D>& from, const Bou
 }
 
 template <int D>
-void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int deep) {
+void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes) {
     for_each_plane(0, q.extent()[D - 1], [&](int plane) { fill_plane_ghosts(q, boundary, plane); });
-    fill_end_planes(q, boundary, deep);
+    fill_end_planes(q, boundary, ghost_planes);
 }
 
 template struct Boundary<2>;

@@ -36,8 +36,8 @@ public:
         return {values_.data() + ghost_layers * plane, sizeof(real) * static_cast<std::size_t>(plane), extent_[D - 1], ghost_layers,
                 values_.store().held()};
     }
-    /// In parallel, allocates `deep` ghost planes.
-    void open(int deep, bool ring) { values_.store().open(deep, ring); }
+    /// In parallel, allocates `ghost_planes` planes.
+    void open(int ghost_planes, bool ring) { values_.store().open(ghost_planes, ring); }
     bool holds(int plane) const { return values_.store().holds(plane); }
     std::size_t bytes() const { return values_.bytes(); }
 
@@ -86,7 +86,7 @@ template <int D>
 void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
 /// Fills the ghost layers from the values of the inner box.
 template <int D>
-void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
+void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = 0);
 
 /// The two halves of fill_ghosts: the ghosts within one plane, and then the planes beyond both ends of the last axis. In parallel these
 /// include the ghost planes of other ranks, to the depth of the step or to the given depth. A subdomain boundary is a side filled by
@@ -94,7 +94,7 @@ void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
 template <int D>
 void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane);
 template <int D>
-void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = 0);
 /// The same for several arrays, exchanged in one message. The last axis must be periodic for all of them or for none.
 template <int D>
 struct WithBoundary {
@@ -102,12 +102,12 @@ struct WithBoundary {
     const Boundary<D>* boundary;
 };
 template <int D>
-void fill_end_planes(const std::vector<WithBoundary<D>>& list, int deep = 0);
+void fill_end_planes(const std::vector<WithBoundary<D>>& list, int ghost_planes = 0);
 template <int D>
-void refresh(const std::vector<WithBoundary<D>>& list, int deep = 0);
+void refresh(const std::vector<WithBoundary<D>>& list, int ghost_planes = 0);
 /// In parallel, fills only the ghost planes of other ranks: where their values have changed and those beyond the sides have not.
 template <int D>
-void refresh(Padded<D>& q, const Boundary<D>& boundary, int deep = 0);
+void refresh(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = 0);
 
 /// For every row of one plane of the inner box: f(first, count, to) writes it; then fills the ghosts around it.
 template <int D, class F>

@@ -72,23 +72,23 @@ void HeatSupply<D>::refuse_heaters_without_fluid(const scene::Scene& scene, cons
 }
 
 template <int D>
-void HeatSupply<D>::follow(std::shared_ptr<Hand> hand, const matter::Melting& melting, const Grid<real, D>& enthalpy) {
-    hand_ = std::move(hand), melting_ = &melting, enthalpy_ = &enthalpy;
+void HeatSupply<D>::follow(std::shared_ptr<BrushForcing> forcing, const matter::Melting& melting, const Grid<real, D>& enthalpy) {
+    brush_forcing_ = std::move(forcing), melting_ = &melting, enthalpy_ = &enthalpy;
     if (source_.empty()) source_ = Grid<real, D>(enthalpy.extent());
 }
 
 template <int D>
-void HeatSupply<D>::heat_by_hand(real t, real dt, const MacState<D>& s) {
-    const auto brush = hand_->at<D>(t);
-    if (brush.kind != HandKind::heat) return;
+void HeatSupply<D>::heat_with_brush(real t, real dt, const MacState<D>& s) {
+    const auto brush = brush_forcing_->at<D>(t);
+    if (brush.kind != BrushKind::heat) return;
     const real wanted = std::min(melting_->enthalpy(brush.temperature), melting_->boils_above);
-    hand_->heat += s.u.cell_volume() * dt * sum_over(s.extent(), [&](const Index<D>& I) -> real {
-                       const real weight = s.cells(I) == Cell::fluid ? brush.weight(s.u.cell_centre(I)) : 0;
-                       if (weight == 0) return 0;
-                       const real power = s.rho * hand_->share(weight, dt) * (wanted - (*enthalpy_)(I)) / dt;
-                       source_(I) += power;
-                       return power;
-                   });
+    brush_forcing_->heat += s.u.cell_volume() * dt * sum_over(s.extent(), [&](const Index<D>& I) -> real {
+                                const real weight = s.cells(I) == Cell::fluid ? brush.weight(s.u.cell_centre(I)) : 0;
+                                if (weight == 0) return 0;
+                                const real power = s.rho * brush_forcing_->share(weight, dt) * (wanted - (*enthalpy_)(I)) / dt;
+                                source_(I) += power;
+                                return power;
+                            });
 }
 
 template <int D>
@@ -112,7 +112,7 @@ const Grid<real, D>& HeatSupply<D>::at(real t, real dt, const MacState<D>& s, Co
         for (const std::size_t c : heater.cells)
             if (is_fluid(c)) source_[c] += density;
     }
-    if (hand_) heat_by_hand(t, dt, s);
+    if (brush_forcing_) heat_with_brush(t, dt, s);
     return source_;
 }
 

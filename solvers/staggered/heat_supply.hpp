@@ -1,6 +1,6 @@
 // Heat sources of the fluid on a grid: heaters with a power, walls with a flux, walls with heat transfer to the surroundings.
 #pragma once
-#include "core/hand.hpp"
+#include "core/brush.hpp"
 #include "matter/ambient.hpp"
 #include "staggered/conduction.hpp"
 #include "staggered/state.hpp"
@@ -20,7 +20,7 @@ public:
 
     /// Interactive heating: the enthalpy under the brush relaxes to that of its temperature. `enthalpy` is the cells'; both arguments must
     /// outlive this object.
-    void follow(std::shared_ptr<Hand> hand, const matter::Melting& melting, const Grid<real, D>& enthalpy);
+    void follow(std::shared_ptr<BrushForcing> forcing, const matter::Melting& melting, const Grid<real, D>& enthalpy);
 
     /// q [W/m³] in fluid cells from t to t + dt, empty where the scene has no source. Sets the outside temperature of `conduction`, at the
     /// middle of that time. A heater's power is shared by the fluid cells that it covers; if there are none, it adds no heat.
@@ -41,7 +41,7 @@ private:
     };
     void read_side(const scene::Scene& scene, const MacState<D>& s, const matter::Melting& melting, Conduction<D>& conduction, int a,
                    int end);
-    void heat_by_hand(real t, real dt, const MacState<D>& s);
+    void heat_with_brush(real t, real dt, const MacState<D>& s);
     void read_heater(const scene::Scene& scene, const MacState<D>& s, std::size_t i);
 
     matter::Ambient ambient_;
@@ -49,7 +49,7 @@ private:
     std::vector<Flux> fluxes_;
     std::vector<std::array<int, 2>> exchanging_;  // axis, end
     Grid<real, D> source_;
-    std::shared_ptr<Hand> hand_;  // nullptr: no interactive heating
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr: no interactive heating
     const matter::Melting* melting_ = nullptr;
     const Grid<real, D>* enthalpy_ = nullptr;
 };

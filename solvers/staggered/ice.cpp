@@ -24,7 +24,7 @@ struct Face {
 
 /// The faces of a row of cells along that row.
 template <int D>
-void hold_back_along(MacState<D>& s, const Grid<real, D>& liquid, const Index<D>& row, const Face& face) {
+void apply_drag_along(MacState<D>& s, const Grid<real, D>& liquid, const Index<D>& row, const Face& face) {
     const int n = s.extent()[0];
     const bool joins = s.sides.periodic(0);
     const real* f = &liquid(row);
@@ -51,7 +51,7 @@ void Ice<D>::find_ranges(const Grid<real, D>& liquid) {
 
 /// Rows of faces entirely in melt, or entirely in ice, have one β.
 template <int D>
-void Ice<D>::hold_back(MacState<D>& s, const Grid<real, D>& liquid, real k) {
+void Ice<D>::apply_drag(MacState<D>& s, const Grid<real, D>& liquid, real k) {
     const Face face{k};
     find_ranges(liquid);
     for (int a = 0; a < D; ++a) {
@@ -79,7 +79,7 @@ void Ice<D>::hold_back(MacState<D>& s, const Grid<real, D>& liquid, real k) {
                 return;
             }
             even(row) = -1;
-            if (a == 0) return hold_back_along(s, liquid, row, face);
+            if (a == 0) return apply_drag_along(s, liquid, row, face);
             const real *f = &liquid(above), *g = &liquid(below);
 #pragma omp simd
             for (int i = 0; i < count; ++i) face(g[i], f[i], beta[i], u[i]);

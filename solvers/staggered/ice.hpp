@@ -10,7 +10,7 @@ template <int D>
 class Ice {
 public:
     /// Sets s.mobility to β and multiplies s.u by β; k is dt C/ρ. A face uses the smaller f of its two cells.
-    void hold_back(MacState<D>& s, const Grid<real, D>& liquid, real k);
+    void apply_drag(MacState<D>& s, const Grid<real, D>& liquid, real k);
     std::size_t bytes() const;
 
 private:

@@ -1,6 +1,6 @@
 #include "staggered/own_planes.hpp"
 
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "geometry/sides.hpp"
 #include "poisson/poisson.hpp"
 #include "staggered/state.hpp"
@@ -32,19 +32,19 @@ bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
     return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
 }
 
-std::string pressure_by_all(const scene::Scene& scene, const Cut& cut) {
+std::string replicated_pressure(const scene::Scene& scene, const Cut& cut) {
     if (could_hold_own_planes(scene, cut)) return "the levels of the pressure of fewer than 20,000 cells";
     if (method_of(scene).distributed_levels) return "the levels of the pressure, all of them";
     return method_of(scene).needs_petsc ? "the matrix of the pressure" : "the pressure";
 }
 
 template <int D>
-HeldPlanes held_planes(const scene::Scene& scene, int deep, int reach) {
-    const Cut cut = cut_asked_for(scene.index<D>("grid.cells")[D - 1]);
-    return HeldPlanes(cut, holds_own_planes(scene, cut), deep, geometry::Sides<D>(scene).periodic(D - 1), reach);
+HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach) {
+    const Cut cut = cut_in_scope(scene.index<D>("grid.cells")[D - 1]);
+    return HeldPlanes(cut, holds_own_planes(scene, cut), ghost_planes, geometry::Sides<D>(scene).periodic(D - 1), reach);
 }
 
-template HeldPlanes held_planes<2>(const scene::Scene& scene, int deep, int reach);
-template HeldPlanes held_planes<3>(const scene::Scene& scene, int deep, int reach);
+template HeldPlanes held_planes<2>(const scene::Scene& scene, int ghost_planes, int reach);
+template HeldPlanes held_planes<3>(const scene::Scene& scene, int ghost_planes, int reach);
 
 }  // namespace weir::staggered

@@ -14,9 +14,9 @@ bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 /// The same by the scene alone, without requests for whole fields.
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
 /// The replicated work of the pressure solve: the small levels of a distributed "multigrid", the matrix of PETSc, otherwise all.
-std::string pressure_by_all(const scene::Scene& scene, const Cut& cut);
-/// The storage of the scene's solver: distributed storage has `deep` ghost planes.
+std::string replicated_pressure(const scene::Scene& scene, const Cut& cut);
+/// The storage of the scene's solver: distributed storage has `ghost_planes` planes.
 template <int D>
-HeldPlanes held_planes(const scene::Scene& scene, int deep, int reach = 1);
+HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach = 1);
 
 }  // namespace weir::staggered

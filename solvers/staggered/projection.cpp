@@ -226,7 +226,7 @@ static void push_by_pressure(MacState<D>& s, real dt) {
 /// In parallel: distributed where the method supports it, otherwise replicated on each rank.
 template <int D>
 const poisson::Report& Projection<D>::solve(MacState<D>& s) {
-    if (!over_ranks()) return solver_->solve(s.p, rhs_);
+    if (!is_distributed()) return solver_->solve(s.p, rhs_);
     if (solver_->shares_planes()) {
         const poisson::Report& report = solver_->solve(s.p, rhs_);
         refresh(s.p, s.sides.periodic(D - 1));

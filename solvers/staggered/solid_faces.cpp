@@ -100,7 +100,7 @@ void SolidPlacement<D>::open(MacState<D>& s, int planes) {
 }
 
 template <int D>
-void SolidPlacement<D>::know(MacState<D>& s, int planes, const std::function<void()>& see) {
+void SolidPlacement<D>::fill_ghosts(MacState<D>& s, int planes, const std::function<void()>& see) {
     if (!any() || !corner_.store().windowed() || planes <= known_) return;
     const Grid<poisson::Cell, D> before = s.cells;
     std::vector<char> held(static_cast<std::size_t>(s.cells.extent()[D - 1]));
@@ -118,8 +118,8 @@ void SolidPlacement<D>::know(MacState<D>& s, int planes, const std::function<voi
 template <int D>
 void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
-    const bool alone = corner_.store().windowed();
-    const AllPlanes all(!alone);  // distributed storage: each rank computes all planes that it stores
+    const bool distributed = corner_.store().windowed();
+    const AllPlanes all(!distributed);  // distributed storage: each rank computes all planes that it stores
     solids_.set_time(time_ = t);
     find_changed(s);
     for (std::size_t box = 0; box < changed_.size(); ++box) {
@@ -129,7 +129,7 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
         place_cells(s, box);
     }
     extends_ = false;
-    if (alone && moving()) rate_ = find_rate(s);
+    if (distributed && moving()) rate_ = find_rate(s);
 }
 
 /// Signed distances at the corners of a box, as far as they are used. The two ends of a periodic axis get the same bits, so that face
@@ -392,7 +392,7 @@ real SolidPlacement<D>::find_rate(const MacState<D>& s) const {
                 for (int i = 0; i < count; ++i) most = std::max(most, std::abs(v[i])), poison += v[i] - v[i];
                 fastest = larger_or_nan(fastest, most + poison);
             });
-        if (over_ranks())
+        if (is_distributed())
             for (const real of_rank : of_ranks(fastest)) fastest = larger_or_nan(fastest, of_rank);
         rate = std::max(rate, fastest / s.u.h[a]);
     }

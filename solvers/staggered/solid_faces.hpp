@@ -78,7 +78,7 @@ public:
     void place(MacState<D>& s, real t);
     /// In parallel (MPI), computes them on `planes` ghost planes from here on. `see` reads the cell flags while they contain only solids.
     /// Afterwards cells that were stored before get back their flags: liquid, air, and cells treated as solid.
-    void know(MacState<D>& s, int planes, const std::function<void()>& see = {});
+    void fill_ghosts(MacState<D>& s, int planes, const std::function<void()>& see = {});
     /// The updated region: boxes of cells that extend farther from the solids than reach().
     const std::vector<CellBox<D>>& changed() const { return changed_; }
     /// A cell whose centre is this far from the solids contains no point within a hundredth of a cell of them; `steepest` bounds the

@@ -29,7 +29,7 @@ real turn_of(const geometry::Pose<D>& pose, const Vec<D>& x, int a, int b) {
     return pose.velocity_at(x + Vec<D>::unit(a))[b] - pose.velocity_at(x)[b];
 }
 
-/// No-slip bodies are handled in wall_grip.hpp.
+/// No-slip bodies are handled in no_slip_walls.hpp.
 template <int D>
 bool is_body(const geometry::Solid<D>& solid) {
     return solid.free && solid.no_slip;
@@ -54,7 +54,7 @@ SolidWall<D> wall_between(const MacState<D>& s, const geometry::Solids<D>& solid
     wall.nearer = 1 / theta;
     wall.now = pose.velocity_at(at)[a];
     wall.last = solids[k].motion.moves() ? last[k].velocity_at(at)[a] : wall.now;
-    wall.turn = turn_of(pose, at, a, across);
+    wall.rotation_rate = turn_of(pose, at, a, across);
     return wall;
 }
 
@@ -70,9 +70,9 @@ void SolidWalls<D>::find(const MacState<D>& s, const SolidPlacement<D>& placemen
     const real largest = *std::max_element(s.u.h.begin(), s.u.h.end());
     // bound on the displacement since the placement, unless a solid starts from rest faster than the fluid beside it
     const real margin = now > last ? (0.05 + 1.2 * (now - last) * placement.max_rate(s)) * largest : 0;
-    stick_ = false;  // the same on all ranks, including those without walls
+    no_slip_ = false;  // the same on all ranks, including those without walls
     for (std::size_t k = 0; k < placement.solids().count(); ++k)
-        stick_ = stick_ || (placement.solids()[k].no_slip && !placement.solids()[k].free);
+        no_slip_ = no_slip_ || (placement.solids()[k].no_slip && !placement.solids()[k].free);
     last_.resize(placement.solids().count());
     for (std::size_t k = 0; k < last_.size(); ++k)
         if (placement.solids()[k].motion.moves()) last_[k] = placement.solids()[k].motion.pose(last);
@@ -139,7 +139,7 @@ void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& pl
 }
 
 template <int D>
-void SolidWalls<D>::hold(MacState<D>& s, real factor) const {
+void SolidWalls<D>::enforce_no_slip(MacState<D>& s, real factor) const {
     const PressurePush<D> push(s, factor);
     for (int a = 0; a < D; ++a)
         for (const HeldFace<D>& f : held(a)) {
@@ -211,7 +211,7 @@ SolidLoad<D> SolidWalls<D>::friction(const MacState<D>& s) const {
                 for (const SolidWall<D>& wall : walls(a, *n)) {
                     if (!wall.no_slip) continue;
                     const real h = s.u.h[wall.across], g0 = -slopes.of_wall(wall), g1 = slopes.away_from(wall);
-                    const real slope = g0 + (0.5 - 1 / wall.nearer) * (g1 - g0) - wall.way * wall.turn;
+                    const real slope = g0 + (0.5 - 1 / wall.nearer) * (g1 - g0) - wall.way * wall.rotation_rate;
                     const real force = s.rho * s.nu * s.u.cell_volume() / h * slope;
                     load.force[a] += force;
                     add_torque(load, a, force, s.u.face_centre(a, n->node) + (wall.way * h / wall.nearer) * Vec<D>::unit(wall.across));

@@ -22,9 +22,9 @@ template <int D>
 struct SolidWall {
     int across, way;
     bool no_slip;
-    real nearer;     // 1/θ; for a free-slip wall D n_a²
-    real now, last;  // its velocity along the component, now and at the previous time [m/s]
-    real turn;       // ∂v_across/∂x_component of its rigid motion [1/s]
+    real nearer;         // 1/θ; for a free-slip wall D n_a²
+    real now, last;      // its velocity along the component, now and at the previous time [m/s]
+    real rotation_rate;  // ∂v_across/∂x_component of its rigid motion [1/s]
 };
 
 /// A node with walls beside it: the entries [begin, end).
@@ -56,7 +56,7 @@ public:
     bool found() const;
     void forget() { any_ = false; }
     /// Returns whether any solid is no-slip.
-    bool stick() const { return stick_; }
+    bool no_slip() const { return no_slip_; }
 
     /// 1 on faces whose velocity is changed by viscosity, 0 elsewhere; with ghosts.
     const Padded<D>& takes_part(int a) const { return takes_part_[static_cast<std::size_t>(a)]; }
@@ -66,7 +66,7 @@ public:
     }
     std::span<const HeldFace<D>> held(int a) const { return held_[static_cast<std::size_t>(a)]; }
     /// u = u_solid + `factor` ∇p on held faces: the projection subtracts the gradient again where the pressure does not change.
-    void hold(MacState<D>& s, real factor) const;
+    void enforce_no_slip(MacState<D>& s, real factor) const;
     /// Friction force and torque [N, N m], with second-order stress at the wall.
     SolidLoad<D> friction(const MacState<D>& s) const;
     std::size_t bytes() const;
@@ -80,7 +80,7 @@ private:
     std::array<std::vector<SolidWall<D>>, D> walls_;
     std::array<std::vector<HeldFace<D>>, D> held_;
     std::vector<geometry::Pose<D>> last_;  // of each moving solid
-    bool stick_ = false, any_ = false;
+    bool no_slip_ = false, any_ = false;
     int begin_ = 0, end_ = 0;  // the range of planes that were searched
 };
 

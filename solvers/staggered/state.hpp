@@ -30,7 +30,7 @@ struct NamedField {
     std::vector<Held> held{};  // during this step, in the order in which they are set
     bool derived = false;      // computed from another field: not advected itself
 
-    void hold() {
+    void enforce_sources() {
         for (const Held& h : held) values[h.cell] = h.value;
     }
 };
@@ -44,7 +44,7 @@ struct SolidFaces {
 };
 
 template <int D>
-struct WallGrip;
+struct NoSlipWalls;
 template <int D>
 class SolidWalls;
 
@@ -62,11 +62,11 @@ struct MacState {
     geometry::Sides<D> sides;
     /// The factor of the pressure gradient on each face, in [0, 1]; empty: 1 everywhere, as long as no drag acts.
     std::array<Grid<real, D>, D> mobility;
-    WallGrip<D>* grip = nullptr;           // no-slip walls of bodies; nullptr: none
-    const SolidWalls<D>* walls = nullptr;  // walls of solids for viscosity; nullptr: no solids or no viscosity
-    real rho = 1;                          // density [kg/m³]
-    real nu = 0;                           // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
-    real time = 0;                         // [s]
+    NoSlipWalls<D>* no_slip_walls = nullptr;  // no-slip walls of bodies; nullptr: none
+    const SolidWalls<D>* walls = nullptr;     // walls of solids for viscosity; nullptr: no solids or no viscosity
+    real rho = 1;                             // density [kg/m³]
+    real nu = 0;                              // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
+    real time = 0;                            // [s]
 
     MacState() = default;
     MacState(const scene::Scene& scene, const FieldPlan& plan);

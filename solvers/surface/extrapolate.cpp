@@ -210,7 +210,7 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
 template <int D>
 template <class F>
 void Extrapolation<D>::for_each_own(F&& f) {
-    if (!over_ranks()) return parallel_for(0, static_cast<int>(front_.size()), f);
+    if (!is_distributed()) return parallel_for(0, static_cast<int>(front_.size()), f);
     own_.clear();
     for (std::size_t i = 0; i < front_.size(); ++i)
         if (is_own_plane(front_[i][D - 1])) own_.push_back(static_cast<int>(i));
@@ -219,25 +219,26 @@ void Extrapolation<D>::for_each_own(F&& f) {
 
 /// In parallel, exchanges the marks of known faces: as far as layers reach this rank's planes, plus the stencil of a slope.
 template <int D>
-void Extrapolation<D>::bring_marks(FaceMarks<D>& marks, int layers) {
+void Extrapolation<D>::refresh_marks(FaceMarks<D>& marks, int layers) {
     constexpr int slope_reach = 3;
-    const int deep = layers + slope_reach;
+    const int ghost_planes = layers + slope_reach;
     const bool ring = frame_.periodic(D - 1);
-    for (std::size_t last = 0; last < 2; ++last) near_of_[last] = planes_near(frame_.cells[D - 1] + static_cast<int>(last), deep, ring);
-    if (!over_ranks()) return;
+    for (std::size_t last = 0; last < 2; ++last)
+        near_of_[last] = planes_near(frame_.cells[D - 1] + static_cast<int>(last), ghost_planes, ring);
+    if (!is_distributed()) return;
     std::array<Planes, D> all;
     for (std::size_t a = 0; a < D; ++a) {
-        marks[a].store().open(deep + 1, ring);
+        marks[a].store().open(ghost_planes + 1, ring);
         all[a] = planes_of(marks[a]);
     }
-    slabs().refresh(*detail::own_share.cut, all, deep + 1, ring);
+    slabs().refresh(*detail::own_share.cut, all, ghost_planes + 1, ring);
 }
 
 template <int D>
 void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const LevelSet<D>& surface, const FaceLists<D>& in_solids,
                                   int layers) {
     const int near = std::min(3, surface.layers()), behind = frame_.periodic(D - 1) ? 4 : 3;  // planes that a slope reads
-    bring_marks(marks, layers);
+    refresh_marks(marks, layers);
     refresh_faces(u, frame_, behind);
     find_band_rows(surface, near);
     for (int a = 0; a < D; ++a) {
@@ -246,7 +247,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
         front_.clear();
         start_front(mark, a, surface, near);
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
-        for (int layer = 1; layer <= layers && (over_ranks() || !front_.empty()); ++layer) {  // another rank may have a front
+        for (int layer = 1; layer <= layers && (is_distributed() || !front_.empty()); ++layer) {  // another rank may have a front
             if (layer > 1) refresh(u[a], frame_.periodic(D - 1), layer == 2 ? behind : 1);
             resize_scratch(value_, front_.size());
             for_each_own([&](int i) {

@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    void bring_marks(FaceMarks<D>& marks, int layers);
+    void refresh_marks(FaceMarks<D>& marks, int layers);
     bool is_near(int plane) const { return near_.empty() || near_[static_cast<std::size_t>(plane)] != 0; }
     void find_band_rows(const LevelSet<D>& surface, int layers);
     void start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers);

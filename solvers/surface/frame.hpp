@@ -120,16 +120,17 @@ struct Extent {
     void join(const Extent& other) { begin = std::min(begin, other.begin), end = std::max(end, other.end); }
 };
 
-/// Halo exchange of `deep` ghost planes of faces, all components in one message per neighbour. Across a periodic boundary face n is face 0.
+/// Halo exchange of `ghost_planes` planes of faces, all components in one message per neighbour. Across a periodic boundary face n is face
+/// 0.
 template <int D>
-void refresh_faces(std::array<Grid<real, D>, D>& u, const Frame<D>& frame, int deep) {
-    if (!over_ranks()) return;
+void refresh_faces(std::array<Grid<real, D>, D>& u, const Frame<D>& frame, int ghost_planes) {
+    if (!is_distributed()) return;
     std::array<Planes, D> all;
     for (std::size_t a = 0; a < D; ++a) {
-        u[a].store().open(deep, frame.periodic(D - 1));
+        u[a].store().open(ghost_planes, frame.periodic(D - 1));
         all[a] = planes_of(u[a]);
     }
-    slabs().refresh(*detail::own_share.cut, all, deep, frame.periodic(D - 1));
+    slabs().refresh(*detail::own_share.cut, all, ghost_planes, frame.periodic(D - 1));
     const int n = frame.cells[D - 1];
     if (!frame.periodic(D - 1) || is_own_plane(n)) return;
     Grid<real, D>& across = u[D - 1];
@@ -137,8 +138,8 @@ void refresh_faces(std::array<Grid<real, D>, D>& u, const Frame<D>& frame, int d
     std::copy_n(across.data(), across.stride(D - 1), across.data() + n * across.stride(D - 1));
 }
 template <int D>
-void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int deep) {
-    refresh_faces<D>(u.face, frame, deep);
+void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int ghost_planes) {
+    refresh_faces<D>(u.face, frame, ghost_planes);
 }
 
 /// f(I, at) for the first entry I of every line along x of a box, and its linear index; threaded over the slowest axis.

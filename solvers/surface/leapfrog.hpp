@@ -39,7 +39,7 @@ public:
     const MacVelocity<D>& at_end(const MacVelocity<D>& u, const Frame<D>& frame) const;
 
     /// In parallel (MPI), gathers the rate of change of all ranks.
-    void make_whole() {
+    void gather_whole() {
         for (auto& rate : rate_.face) gather(rate);
     }
     void save(Checkpoint& to) const;

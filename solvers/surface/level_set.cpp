@@ -56,15 +56,15 @@ static constexpr int skin_layers = 3;
 
 template <int D>
 void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::array<std::vector<Index<D>>, D>* faces) {
-    const bool alone = closed.store().windowed();
+    const bool distributed = closed.store().windowed();
     uncover(closed);
     closed_ = closed;
-    if (alone) {
+    if (distributed) {
         find_near();
         refresh(closed_, frame_.periodic(D - 1), wide() + 1);
     }
     find_skin(planes_near(frame_.cells[D - 1], skin_layers, frame_.periodic(D - 1)));
-    if (slabs().several()) share_skin(alone);
+    if (slabs().several()) share_skin(distributed);
     walls_.find(frame_, closed_, skin_, faces, wide() + 1);
 }
 
@@ -86,11 +86,11 @@ void LevelSet<D>::uncover(const Grid<std::uint8_t, D>& closed) {
 template <int D>
 void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
     if (open_part_.empty()) open_part_ = Grid<real, D>(frame_.cells, 1);
-    const bool ring = frame_.periodic(D - 1), alone = closed_.store().windowed();
-    if (alone) open_part_.store().open(wide() + 1, ring);
+    const bool ring = frame_.periodic(D - 1), distributed = closed_.store().windowed();
+    if (distributed) open_part_.store().open(wide() + 1, ring);
     for (const CellBox<D>& box : solids.changed())
         for_each_held(open_part_, box.lo, box.hi, [&](const Index<D>& I) {
-            if (alone && (!is_own_plane(I[D - 1]) || !solids.holds_corners(I[D - 1]))) return;
+            if (distributed && (!is_own_plane(I[D - 1]) || !solids.holds_corners(I[D - 1]))) return;
             real mean = 0, least = infinity;
             Vec<D> slope{};
             for (unsigned corner = 0; corner < 1U << D; ++corner) {
@@ -103,7 +103,7 @@ void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
             }
             open_part_(I) = least >= 0 ? 1 : fraction_below_plane<D>(-mean, -1.0 * slope);
         });
-    if (alone) refresh(open_part_, ring, wide() + 1);
+    if (distributed) refresh(open_part_, ring, wide() + 1);
 }
 
 /// Finds skin_: closed cells beside open ones in these planes (empty: all planes), and further layers behind them.
@@ -131,7 +131,7 @@ void LevelSet<D>::find_skin(const std::vector<char>& planes) {
 /// In parallel all ranks get the whole skin, in the order of one process, from the parts of each rank's planes (with distributed storage,
 /// `alone`).
 template <int D>
-void LevelSet<D>::share_skin(bool alone) {
+void LevelSet<D>::share_skin(bool distributed) {
     std::vector<std::size_t> rim, near;
     for_each_open_beside_closed(planes_near(frame_.cells[D - 1], 0, false), [&](const Index<D>& I) {
         bool beside = false;
@@ -141,7 +141,7 @@ void LevelSet<D>::share_skin(bool alone) {
     for (const Index<D>& I : skin_)
         if (is_own_plane(I[D - 1])) near.push_back(phi.linear(I));
     std::sort(near.begin(), near.end());
-    if (alone) rim = of_all_ranks(rim), near = of_all_ranks(near);
+    if (distributed) rim = of_all_ranks(rim), near = of_all_ranks(near);
     skin_of_ranks_.find(frame_, std::move(rim), near, skin_layers, skin_, skin_end_);
 }
 
@@ -151,7 +151,7 @@ static constexpr std::uint8_t continued = 254;  // not a layer of the band
 template <int D>
 void LevelSet<D>::continue_into_solids() {
     if (skin_.empty()) return;
-    if (over_ranks()) return skin_of_ranks_.continue_into(phi, skin_);
+    if (is_distributed()) return skin_of_ranks_.continue_into(phi, skin_);
     for (const Index<D>& I : skin_) layer_(I) = 0;
     std::size_t first = 0;
     for (const std::size_t last : skin_end_) {
@@ -183,7 +183,7 @@ void LevelSet<D>::continue_layer(std::size_t first, std::size_t last) {
 
 template <int D>
 void LevelSet<D>::find_own() {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     own_.clear();
     for (std::size_t i = 0; i < band_.size(); ++i)
         if (is_own_plane(band_[i][D - 1])) own_.push_back(static_cast<int>(i));
@@ -359,7 +359,7 @@ real LevelSet<D>::cubic(const Vec<D>& x) const {
 }
 
 template <int D>
-std::size_t LevelSet<D>::rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part) {
+std::size_t LevelSet<D>::correct_with_particles(const Markers<D>& markers, const Grid<real, D>* part) {
     const real h = frame_.h_min();
     const real radius = (D == 2 ? 0.28 : 0.31) * h;  // sphere of a marker's volume: (V_marker / V_unit sphere)^(1/D) at 2^D per cell
     const real margin = sure_side * h;               // Enright et al. 2002: closer to the surface the side is uncertain

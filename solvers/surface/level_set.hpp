@@ -46,12 +46,12 @@ public:
     /// that a rank reads.
     void advect(const MacVelocity<D>& u, real dt, int reach = 0);
     /// In parallel, gathers φ from all ranks.
-    void make_whole() { gather(phi); }
+    void gather_whole() { gather(phi); }
     void make_layers_whole() { gather(layer_); }
     /// Particle level-set correction: unites the liquid with spheres around escaped markers. Returns how many of this rank's own markers
     /// had escaped. Markers must be sorted. `part`, if given: the liquid fraction of each cell; a marker in a cell without liquid is
     /// ignored.
-    std::size_t rescue_escaped(const Markers<D>& markers, const Grid<real, D>* part = nullptr);
+    std::size_t correct_with_particles(const Markers<D>& markers, const Grid<real, D>* part = nullptr);
     /// Number of this rank's own escaped markers still outside the surface: drops too small for the grid.
     std::size_t count_airborne(const Markers<D>& markers) const;
     /// Reinitializes φ to a signed distance and finds the band.
@@ -90,7 +90,7 @@ private:
     void for_each_open_beside_closed(const std::vector<char>& planes, F&& f) const;
     void find_skin(const std::vector<char>& planes);
     void continue_layer(std::size_t first, std::size_t last);
-    void share_skin(bool alone);
+    void share_skin(bool distributed);
     void uncover(const Grid<std::uint8_t, D>& closed);
     void continue_into_solids();
     /// Width of the cell normal to the surface near it [m].
@@ -153,7 +153,7 @@ private:
 template <int D>
 template <class F>
 void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const {
-    if (!over_ranks()) return parallel_for(static_cast<int>(first), static_cast<int>(last), f);
+    if (!is_distributed()) return parallel_for(static_cast<int>(first), static_cast<int>(last), f);
     const auto place = [&](std::size_t at) { return std::lower_bound(own_.begin(), own_.end(), static_cast<int>(at)) - own_.begin(); };
     parallel_for(static_cast<int>(place(first)), static_cast<int>(place(last)), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }

@@ -39,7 +39,7 @@ void LevelSet<D>::find_inside() {
 /// In parallel, the planes in which this rank finds the band.
 template <int D>
 void LevelSet<D>::find_near() {
-    if (!over_ranks() || !near_.empty()) return;
+    if (!is_distributed() || !near_.empty()) return;
     const bool ring = frame_.periodic(D - 1);
     near_ = planes_near(frame_.cells[D - 1], wide(), ring);
     for (auto* bytes : {&layer_, &inside_, &closed_}) bytes->store().open(wide() + 1, ring);
@@ -440,7 +440,7 @@ real LevelSet<D>::sum_over_band(int layers, F&& f) const {
     const auto add = [&](real& sum, std::size_t at) {
         if (closed_.empty() || !closed_(band_[at])) sum += open_part(band_[at]) * f(band_[at]);
     };
-    if (over_ranks() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
+    if (is_distributed() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
     constexpr std::size_t block = BandOfRanks::block;
     const std::size_t end = layer_end(layers);
     return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {

@@ -8,7 +8,7 @@
 namespace weir::surface {
 
 namespace {
-constexpr int nobody = INT_MIN;
+constexpr int unplaced = INT_MIN;
 }
 
 template <int D>
@@ -17,12 +17,12 @@ void SkinOfRanks<D>::find(const Frame<D>& frame, std::vector<std::size_t> rim, c
     rim_ = std::move(rim);
     std::unordered_map<std::size_t, int> place;  // index in the skin, of closed cells that may belong to it
     place.reserve(closed.size());
-    for (const std::size_t at : closed) place.emplace(at, nobody);
+    for (const std::size_t at : closed) place.emplace(at, unplaced);
     skin.clear();
     const auto add_neighbours = [&](const Index<D>& I) {
         for_each_beside(frame, I, [&](const Index<D>& J) {
             const auto at = place.find(frame.linear(J));
-            if (at == place.end() || at->second != nobody) return;
+            if (at == place.end() || at->second != unplaced) return;
             at->second = static_cast<int>(skin.size());
             skin.push_back(J);
         });
@@ -49,9 +49,9 @@ void SkinOfRanks<D>::find_beside(const Frame<D>& frame, const std::vector<Index<
         const std::size_t at = frame.linear(J);
         if (const auto open = in_rim.find(at); open != in_rim.end()) return open->second;
         const auto other = place.find(at);
-        return other != place.end() && other->second != nobody && other->second < first ? ~other->second : nobody;
+        return other != place.end() && other->second != unplaced && other->second < first ? ~other->second : unplaced;
     };
-    beside_.assign(2 * D * skin.size(), nobody);
+    beside_.assign(2 * D * skin.size(), unplaced);
     std::size_t i = 0, first = 0;
     for (const std::size_t last : ends) {
         for (; i < last; ++i)
@@ -82,7 +82,7 @@ void SkinOfRanks<D>::continue_into(Grid<real, D>& phi, const std::vector<Index<D
         for (std::size_t k = 2 * D * i; k < 2 * D * (i + 1);) {
             real pair = 0;  // the two sides are added first, as in one process
             for (const std::size_t end = k + 2; k < end; ++k) {
-                if (beside_[k] == nobody) continue;
+                if (beside_[k] == unplaced) continue;
                 pair += beside_[k] >= 0 ? rim_value_[static_cast<std::size_t>(beside_[k])] : value_[static_cast<std::size_t>(~beside_[k])];
                 ++count;
             }

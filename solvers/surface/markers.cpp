@@ -221,7 +221,7 @@ std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, st
 
 /// The same for markers [first, last). Returns how many have left the domain.
 template <int D>
-std::int64_t Markers<D>::hand_on(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave) {
+std::int64_t Markers<D>::exchange(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave) {
     const auto ranks = static_cast<std::size_t>(slabs().ranks()), self = static_cast<std::size_t>(slabs().rank());
     going_.resize(ranks), sent_.resize(ranks), received_.resize(ranks);
     find_holders(frame, cut);
@@ -235,7 +235,7 @@ std::int64_t Markers<D>::hand_on(const Frame<D>& frame, const Cut& cut, std::siz
 
     std::size_t arrays = 0, total = last - first - gone_.size();
     for_each_array([&](std::vector<real>&) { ++arrays; });
-    parcels_.clear();
+    messages_.clear();
     for (std::size_t r = 0; r < ranks; ++r) {
         if (r == self) continue;
         total += coming(r);
@@ -245,10 +245,10 @@ std::int64_t Markers<D>::hand_on(const Frame<D>& frame, const Cut& cut, std::siz
         for_each_array([&](const std::vector<real>& array) {
             for (const int p : going_[r]) *to++ = array[static_cast<std::size_t>(p)];
         });
-        parcels_.push_back({static_cast<int>(r), sent_[r].data(), sent_[r].size() * sizeof(real), received_[r].data(),
-                            received_[r].size() * sizeof(real)});
+        messages_.push_back({static_cast<int>(r), sent_[r].data(), sent_[r].size() * sizeof(real), received_[r].data(),
+                             received_[r].size() * sizeof(real)});
     }
-    slabs().trade(parcels_);
+    slabs().exchange(messages_);
     std::size_t number = 0;
     for_each_array([&](std::vector<real>& array) {
         resize_scratch(scratch_, total);
@@ -274,12 +274,12 @@ std::int64_t Markers<D>::hand_on(const Frame<D>& frame, const Cut& cut, std::siz
 template <int D>
 std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut& cut, bool leave) {
     const auto [first, last] = own(frame);
-    return {static_cast<std::int64_t>(last - first), hand_on(frame, cut, first, last, leave)};
+    return {static_cast<std::int64_t>(last - first), exchange(frame, cut, first, last, leave)};
 }
 
 template <int D>
 void Markers<D>::deal(const Frame<D>& frame, const Cut& cut) {
-    hand_on(frame, cut, 0, count(), false);
+    exchange(frame, cut, 0, count(), false);
     sent_.clear(), received_.clear();  // few markers migrate per step
     trim();
     sort(frame);

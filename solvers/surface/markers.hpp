@@ -102,7 +102,7 @@ private:
     void find_rows(const Frame<D>& frame);
     void find_holders(const Frame<D>& frame, const Cut& cut);
     std::int64_t find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
-    std::int64_t hand_on(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave);
+    std::int64_t exchange(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, from_;
@@ -116,7 +116,7 @@ private:
     std::vector<int> gone_, table_;
     std::vector<std::size_t> table_rows_;
     std::vector<std::vector<real>> sent_, received_;
-    std::vector<Parcel> parcels_;
+    std::vector<Message> messages_;
 };
 
 template <int D>

@@ -48,15 +48,15 @@ real Around<D>::linear(const Vec<D>& d) const {
 
 template <int D>
 void ThinWalls<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& closed, const std::vector<Index<D>>& skin,
-                        const std::array<std::vector<Index<D>>, D>* faces, int deep) {
+                        const std::array<std::vector<Index<D>>, D>* faces, int ghost_planes) {
     frame_ = frame;
     if (marks_.empty()) marks_ = Grid<std::uint8_t, D>(frame.cells);
-    const bool ring = frame.periodic(D - 1), alone = marks_.store().windowed();
-    marks_.store().open(deep, ring);
+    const bool ring = frame.periodic(D - 1), distributed = marks_.store().windowed();
+    marks_.store().open(ghost_planes, ring);
     if (any_) marks_.fill(0);
     any_ = false;
     // the stencils of this rank's own cells reach walls with both ends within this distance
-    const auto near = alone ? planes_near(frame.cells[D - 1], reach_ + thickest - 1, ring) : std::vector<char>();
+    const auto near = distributed ? planes_near(frame.cells[D - 1], reach_ + thickest - 1, ring) : std::vector<char>();
     const auto is_known = [&](int plane) { return near.empty() || near[static_cast<std::size_t>(plane)] != 0; };
     for (const Index<D>& I : skin) {
         if (!is_known(I[D - 1])) continue;
@@ -77,7 +77,7 @@ void ThinWalls<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& clos
             --hi[a];
             mark_around(lo, hi);
         }
-    if (alone) refresh(marks_, ring, deep);
+    if (distributed) refresh(marks_, ring, ghost_planes);
     any_ = sum_of_ranks(any_) > 0;
 }
 

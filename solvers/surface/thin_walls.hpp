@@ -53,9 +53,9 @@ public:
     /// extrapolated from both.
     static constexpr int thickest = 5;
     /// `skin`: the closed cells near open ones, starting with those beside them; `faces`: closed faces, of which those between open cells
-    /// are used. With distributed storage, `deep` ghost planes of them are known.
+    /// are used. With distributed storage, `ghost_planes` planes of them are known.
     void find(const Frame<D>& frame, const Grid<std::uint8_t, D>& closed, const std::vector<Index<D>>& skin,
-              const std::array<std::vector<Index<D>>, D>* faces, int deep);
+              const std::array<std::vector<Index<D>>, D>* faces, int ghost_planes);
     /// Returns whether a stencil around cell I may reach through a wall.
     bool is_near(const Index<D>& I) const { return any_ && (marks_(I) & near_wall) != 0; }
     /// Returns whether closed cell I belongs to a wall that is extrapolated into from both sides.

@@ -80,7 +80,7 @@ void LiquidVolume<D>::find_rests(const Grid<real, D>& phi, const MacState<D>& st
 /// Distributes excess to neighbours in proportion to the rise of φ towards them (for too much volume or a hole), or to its fall (for
 /// negative volume, or liquid outside). Equal parts where φ is flat.
 template <int D>
-void LiquidVolume<D>::hand_on(const Grid<real, D>& phi, const MacState<D>& state) {
+void LiquidVolume<D>::distribute_excess(const Grid<real, D>& phi, const MacState<D>& state) {
     for (const Rest& rest : rests_) {
         const Index<D> I = frame_.index_of(rest.cell);
         const bool outwards = rest.outwards;
@@ -120,7 +120,7 @@ void LiquidVolume<D>::settle(const Grid<real, D>& phi, const MacState<D>& state,
     for (int pass = 0; pass < passes; ++pass) {
         find_reach(pass > 0);
         find_rests(phi, state, exempt);
-        hand_on(phi, state);
+        distribute_excess(phi, state);
         refresh(part_, frame_.periodic(D - 1), 2);
     }
     find_reach(true);

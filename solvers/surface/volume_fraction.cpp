@@ -132,7 +132,7 @@ void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) 
 template <int D>
 void LiquidVolume<D>::find_reach(bool within) {
     const int n = frame_.cells[0];
-    within = within && !over_ranks();
+    within = within && !is_distributed();
     const auto wet = [&](std::size_t line) {
         const real* F = part_.data() + line * static_cast<std::size_t>(n);
         const Extent reach = within ? reach_of_[line] : Extent{0, n};

@@ -42,7 +42,7 @@ public:
     const Grid<real, D>& part() const { return part_; }
     real volume() const;  // [m^D]
     /// Gathers the planes of all ranks, where each rank stores all planes but computes only its own.
-    void make_whole() { gather(part_); }
+    void gather_whole() { gather(part_); }
     void save(Checkpoint& to) const;
     static bool is_saved(const Checkpoint& from) { return from.has("surface.liquid_part"); }
     void restore(const Checkpoint& from);
@@ -71,7 +71,7 @@ private:
     real capacity(std::size_t cell) const;
     bool may_have_rests(std::size_t first, int count, const Grid<real, D>& phi, const MacState<D>& state) const;
     void find_rests(const Grid<real, D>& phi, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);
-    void hand_on(const Grid<real, D>& phi, const MacState<D>& state);
+    void distribute_excess(const Grid<real, D>& phi, const MacState<D>& state);
     template <class F>
     void for_each_near_line(F&& f) const;
     void compare(const LevelSet<D>& surface, const MacState<D>& state, const Grid<std::uint8_t, D>& exempt);

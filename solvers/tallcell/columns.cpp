@@ -17,13 +17,13 @@ Layout<D>::Layout(const Index<D>& cells_, int up_, const std::array<bool, D>& pe
 
 template <int D>
 ColumnRange Layout<D>::own() const {
-    if (!over_ranks()) return {0, columns()};
+    if (!is_distributed()) return {0, columns()};
     return {detail::own_share.lower(0) * n[0], detail::own_share.upper(n[1]) * n[0]};
 }
 
 template <int D>
 ColumnRange Layout<D>::above() const {
-    if (!over_ranks()) return {};
+    if (!is_distributed()) return {};
     const int end = own().end;
     if (end < columns()) return {end, end + n[0]};
     return periodic[1] ? ColumnRange{0, n[0]} : ColumnRange{};

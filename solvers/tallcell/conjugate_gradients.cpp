@@ -189,7 +189,7 @@ const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const Knots
                                                    std::to_string(report_.iterations) + " iterations");
         }
         precondition(A, r.largest);
-        turn(A, report_.iterations == 0, alpha, rz);
+        update_direction(A, report_.iterations == 0, alpha, rz);
         alpha = rz / multiply_and_dot(A, p_, Ap_);
         if (!std::isfinite(alpha)) throw NumericalFailure("pressure", "conjugate gradients broke down");
         size = advance(A, alpha, r.largest);
@@ -224,7 +224,7 @@ ColumnMultigrid::Residual ColumnMultigrid::residual(const ColumnMatrix& A) {
 
 /// p = z + β p, with Polak and Ribière's β, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p, because a single-precision preconditioner is not
 /// exactly constant. Sets rz to z·r.
-void ColumnMultigrid::turn(const ColumnMatrix& A, bool first, real alpha, real& rz) {
+void ColumnMultigrid::update_direction(const ColumnMatrix& A, bool first, real alpha, real& rz) {
     const LineStore<float>& z = levels_[0].x;
     const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
         real zAp = 0, zr = 0;

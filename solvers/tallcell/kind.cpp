@@ -1,7 +1,7 @@
 #include "tallcell/kind.hpp"
 
 #include "core/traffic.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
 #include "staggered/initial.hpp"
@@ -73,7 +73,7 @@ Key scheme_keys() {
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
-void over_ranks(const scene::Scene& scene) { scene::refuse_hand(scene); }
+void check_parallel(const scene::Scene& scene) { scene::refuse_brush(scene); }
 
 }  // namespace
 
@@ -89,7 +89,7 @@ scene::SolverKind kind() {
                    scene::surface_key_of_level_set(false)};
     schema.effects = schemas_of(body_forces());
     schema.effects.push_back(surface::volume_control());
-    schema.effects.push_back(geometry::hand_schema());
+    schema.effects.push_back(geometry::brush_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
     scene::SolverKind tall{
         schema,
@@ -97,7 +97,7 @@ scene::SolverKind kind() {
         {{"velocity", "pressure", "level_set", "cell_height"},
          {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
          "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-        over_ranks,
+        check_parallel,
         scene::Shared::by_planes,
         [](const scene::Scene&, const Cut&) {
             return "the levels of the pressure of fewer than 20,000 unknowns, extrapolation of the level set into solids";

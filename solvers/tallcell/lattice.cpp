@@ -19,7 +19,7 @@ real TallPressure<D>::largest_of_blocks(const ColumnRange& columns, F&& f) const
 
 /// Maximum over the ranks; NaN if any is NaN.
 static real largest_of_ranks(real own) {
-    if (!over_ranks()) return own;
+    if (!is_distributed()) return own;
     const std::vector<real> all = of_ranks(own);
     return detail::largest_of(all, static_cast<int>(all.size()));
 }

@@ -64,7 +64,7 @@ private:
         real norm, largest, b_squares, b_largest;
     };
     Residual residual(const ColumnMatrix& A);
-    void turn(const ColumnMatrix& A, bool first, real alpha, real& rz);
+    void update_direction(const ColumnMatrix& A, bool first, real alpha, real& rz);
     real advance(const ColumnMatrix& A, real alpha, real& largest);
 
     poisson::Options options_;

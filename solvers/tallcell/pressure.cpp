@@ -69,7 +69,7 @@ void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>
 /// In parallel, combines over all columns: the shared rows, the row above all elements, and the row below which all faces are in runs.
 template <int D>
 void TallPressure<D>::agree_on_rows() {
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     const std::size_t rows = row_index_.size(), count = rows + 2, ranks = static_cast<std::size_t>(slabs().ranks());
     resize_scratch(rows_of_ranks_, count * ranks);
     const auto own = rows_of_ranks_.begin() + static_cast<std::ptrdiff_t>(count * static_cast<std::size_t>(slabs().rank()));
@@ -270,7 +270,7 @@ typename TallPressure<D>::RunsUp TallPressure<D>::runs_up(int a, int column) con
 }
 
 template <int D>
-void TallPressure<D>::show_heights(Grid<real, D>& to) const {
+void TallPressure<D>::write_heights(Grid<real, D>& to) const {
     const Knots& knots = knots_;
     const ColumnRange own = layout_.own();
     parallel_for(own.begin, own.end, [&](int c) {

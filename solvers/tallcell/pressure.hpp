@@ -80,7 +80,7 @@ public:
     /// y = A x, by knots.
     void multiply(const std::vector<real>& x, std::vector<real>& y) { solver_.multiply(A_, knots_, x, y); }
     /// The height of the element that contains each cell of this rank's columns [m]; 0 outside the liquid.
-    void show_heights(Grid<real, D>& to) const;
+    void write_heights(Grid<real, D>& to) const;
     /// Iterates over the runs of faces along axis a on the lower side of a column (its own vertical faces where a is up), bottom up.
     class RunsUp {
     public:

@@ -17,29 +17,29 @@ bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty()
 /// Halo exchange of the velocity, as deep as the motion of the step plus the two samples at the end of a trajectory; runs of one ghost line
 /// move too.
 template <int D>
-void TallCells<D>::bring_faces(real dt) {
+void TallCells<D>::refresh_velocity(real dt) {
     whole_ = held_.cut().empty();
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
     const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];
     reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
     refresh_faces(state_.u, frame_, reach_);
-    solids_.know(state_, reach_);
+    solids_.fill_ghosts(state_, reach_);
 }
 
 /// Gathers the planes of other ranks for reading whole fields; collective.
 template <int D>
-void TallCells<D>::make_whole() const {
+void TallCells<D>::gather_whole() const {
     if (whole_) return;
-    if (held_.alone()) return bring_beside();
+    if (held_.distributed()) return fill_ghosts();
     const OwnPlanes mine(held_.cut());
     auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
     gather(const_cast<Grid<real, D>&>(surface_.phi));
     if (!pressure_.has_all()) {
-        pressure_.show_heights(tall_);
+        pressure_.write_heights(tall_);
         gather(tall_);
     }
     whole_ = true;
@@ -47,9 +47,9 @@ void TallCells<D>::make_whole() const {
 
 /// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
 template <int D>
-void TallCells<D>::bring_beside() const {
+void TallCells<D>::fill_ghosts() const {
     const OwnPlanes mine = held_.own();
-    pressure_.show_heights(tall_);
+    pressure_.write_heights(tall_);
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all{planes_of(state.p), planes_of(tall_)};
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
@@ -87,9 +87,9 @@ void Transport<D>::keep(const MacVelocity<D>& u, int beside) {
     }
 }
 
-#define WEIR_INSTANTIATE(D)                           \
-    template void TallCells<D>::bring_faces(real dt); \
-    template void TallCells<D>::make_whole() const;   \
+#define WEIR_INSTANTIATE(D)                                \
+    template void TallCells<D>::refresh_velocity(real dt); \
+    template void TallCells<D>::gather_whole() const;      \
     template void Transport<D>::keep(const MacVelocity<D>&, int);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

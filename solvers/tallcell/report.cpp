@@ -1,5 +1,5 @@
 // Output and steering of liquid on tall cells: fields, integrals, checkpoints, an edited velocity.
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
 #include "tallcell/solver.hpp"
@@ -8,11 +8,11 @@ namespace weir::tallcell {
 
 template <int D>
 FieldSet TallCells<D>::fields() const {
-    make_whole();
-    if (pressure_.has_all()) pressure_.show_heights(tall_);
+    gather_whole();
+    if (pressure_.has_all()) pressure_.write_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     FieldView velocity{"velocity", "m/s", Where::face, "", {}};
     for (int a = 0; a < D; ++a) velocity.data.push_back(state_.u[a].values());
     set.fields.push_back(std::move(velocity));
@@ -24,26 +24,26 @@ FieldSet TallCells<D>::fields() const {
 
 template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_, &volume_.part())
                                      .integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
     list[0].value = volume_.volume();
     list.push_back({"pressure_unknowns", "", static_cast<real>(pressure_.unknowns())});
-    if (hand_) geometry::sum_up(*hand_, D, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     return list;
 }
 
 template <int D>
 void TallCells<D>::save(Checkpoint& to) const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
-    if (!held_.alone()) {  // global values, as in the whole state
+    if (!held_.distributed()) {  // global values, as in the whole state
         const_cast<LevelSet<D>&>(surface_).make_layers_whole();
-        const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
-        const_cast<LiquidVolume<D>&>(volume_).make_whole();
+        const_cast<Leapfrog<D>&>(leapfrog_).gather_whole();
+        const_cast<LiquidVolume<D>&>(volume_).gather_whole();
         gather(const_cast<MacState<D>&>(state_).cells);
     }
     state_.save(to);
@@ -53,7 +53,7 @@ void TallCells<D>::save(Checkpoint& to) const {
     const std::array<real, 3> reals{volume_target_, volume_shift_, rate_};
     to.put_value("tallcell.reals", reals);
     to.put_value("tallcell.steps", steps_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
 }
 
 template <int D>
@@ -71,10 +71,10 @@ void TallCells<D>::restore(const Checkpoint& from) {
         volume_.start(surface_, state_);  // files of older versions have no such block
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
-    if (hand_ && from.has("hand")) hand_->restore(from);
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     remesh();
     mark_liquid_faces();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 template <int D>

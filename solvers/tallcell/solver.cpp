@@ -15,7 +15,7 @@ StepReport TallCells<D>::step(real dt) {
     leapfrog_.advance(state_.u, dt);  // u at the middle of the step
     const real kick = leapfrog_.kick(dt, true);
     leapfrog_.keep(state_.u);
-    bring_faces(dt);  // halo exchange in parallel, as deep as the motion
+    refresh_velocity(dt);  // halo exchange in parallel, as deep as the motion
     place_solids(state_.time + dt);
     move_surface(dt);                               // Dφ/Dt = 0, and φ is a distance again
     control_volume();                               // only if the scene names it
@@ -42,7 +42,7 @@ StepReport TallCells<D>::step(real dt) {
 /// Initial rate of change of the velocity: the result of a step of dt without motion.
 template <int D>
 void TallCells<D>::find_rate(real dt) {
-    const Hand account = hand_ ? *hand_ : Hand();
+    const BrushForcing account = brush_forcing_ ? *brush_forcing_ : BrushForcing();
     const MacVelocity<D> u = state_.u;
     leapfrog_.keep(state_.u);
     forces(dt);
@@ -54,13 +54,13 @@ void TallCells<D>::find_rate(real dt) {
     extend_velocity();
     leapfrog_.begin(state_.u, dt);
     state_.u = u;
-    if (hand_) *hand_ = account;
+    if (brush_forcing_) *brush_forcing_ = account;
 }
 
 template <int D>
 void TallCells<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    const AllPlanes all(!held_.alone());
+    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     for_each_held(closed_, Index<D>{}, frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
@@ -77,16 +77,16 @@ void TallCells<D>::move_surface(real dt) {
     volume_.settle(surface_.phi, state_, closed_);
     volume_.correct(surface_, state_, closed_, volume_.courant(dt, rate_, norm(gravity_)));
     surface_.redistance();
-    if (hand_) pour_and_drain_by_hand();
+    if (brush_forcing_) apply_brush_sources();
 }
 
 /// Unites the level set with the brush, or subtracts the brush. Poured liquid has the brush's velocity, drained liquid removes its own; the
 /// volume is the change of the level set.
 template <int D>
-void TallCells<D>::pour_and_drain_by_hand() {
-    const auto brush = hand_->at<D>(state_.time);
-    const bool pours = brush.kind == HandKind::pour;
-    if (!pours && brush.kind != HandKind::drain) return;
+void TallCells<D>::apply_brush_sources() {
+    const auto brush = brush_forcing_->at<D>(state_.time);
+    const bool pours = brush.kind == BrushKind::pour;
+    if (!pours && brush.kind != BrushKind::drain) return;
     const real before = surface_.volume();
     Vec<D> u{};  // mean over the cells that change sides
     real changed = 0;
@@ -114,8 +114,8 @@ void TallCells<D>::pour_and_drain_by_hand() {
     const real volume = surface_.volume() - before;
     volume_target_ += volume;
     for (const auto& [I, part] : part_before) volume_.add(I, surface_.fraction(I) - part);
-    hand_->mass += state_.rho * volume;
-    for (int a = 0; a < D && changed > 0; ++a) hand_->impulse[a] += state_.rho * volume * u[a] / changed;
+    brush_forcing_->mass += state_.rho * volume;
+    for (int a = 0; a < D && changed > 0; ++a) brush_forcing_->impulse[a] += state_.rho * volume * u[a] / changed;
 }
 
 template <int D>

@@ -45,9 +45,9 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     std::vector<Integral> integrals() const override;
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     real time() const override { return state_.time; }
     bool checks_itself() const override { return true; }
     void save(Checkpoint& to) const override;
@@ -73,7 +73,7 @@ private:
     void find_rate(real dt);
     void place_solids(real t);
     void move_surface(real dt);
-    void pour_and_drain_by_hand();
+    void apply_brush_sources();
     void control_volume();
     void remesh();
     void advect(real dt);
@@ -82,9 +82,9 @@ private:
     void extend_velocity();
 
     // In parallel (ranks.cpp)
-    void bring_faces(real dt);
-    void make_whole() const;
-    void bring_beside() const;
+    void refresh_velocity(real dt);
+    void gather_whole() const;
+    void fill_ghosts() const;
 
     void set_fixed_faces();
     void mark_liquid_faces();
@@ -111,7 +111,7 @@ private:
     real volume_target_ = 0, volume_shift_ = 0;
     real rate_ = 0;  // max |u|/h over known faces [1/s]
     std::int64_t steps_ = 0;
-    std::shared_ptr<Hand> hand_;  // nullptr where the scene has none
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
     int reach_ = 0;              // ghost planes that motion reads in this step
     mutable bool whole_ = true;  // other ranks' planes, or the ghost planes, are up to date

@@ -1,6 +1,6 @@
 // Initial state of a scene with tall cells, and its unsupported combinations.
 #include "surface/start.hpp"
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "scene/names.hpp"
 #include "staggered/effects.hpp"
 #include "staggered/initial.hpp"
@@ -31,8 +31,8 @@ TallCells<D>::TallCells(const scene::Scene& scene)
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
       pressure_(frame_, up_, options_.poisson),
-      hand_(geometry::make_hand(scene, geometry::moving_kinds)) {
-    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
+      brush_forcing_(geometry::make_brush(scene, geometry::moving_kinds)) {
+    if (brush_forcing_) effects_.add("hand", brush_effect<D>(brush_forcing_, Stage::force));
     refuse_what_it_cannot(scene);
     const int reach = static_cast<int>(std::ceil(options_.cfl));
     surface_ = LevelSet<D>(frame_, reach);
@@ -51,7 +51,7 @@ TallCells<D>::TallCells(const scene::Scene& scene)
     set_fixed_faces();
     extend_velocity();
     held_.made();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 template <int D>

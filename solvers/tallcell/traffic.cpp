@@ -1,6 +1,6 @@
 // Estimate of what a rank sends in a step of the solver "tallcell": the exchanges of solver.cpp and of surface/, pass by pass.
 #include "core/traffic.hpp"
-#include "geometry/wet_part.hpp"
+#include "geometry/liquid_fraction.hpp"
 #include "surface/traffic.hpp"
 #include "tallcell/solver.hpp"
 
@@ -90,7 +90,8 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     tally.refresh({across}, 1, 3);  // the velocity after advection, before walls and after
     std::set<int> rows;
     for (int z = 0; z < n[2]; ++z)
-        add_knots(options.shape, surface.layers, static_cast<int>(std::lround(geometry::wet_part_of_plane<3>(scene, z) * n[up])), rows);
+        add_knots(options.shape, surface.layers, static_cast<int>(std::lround(geometry::liquid_fraction_of_plane<3>(scene, z) * n[up])),
+                  rows);
     ColumnPlaces finest;
     finest.n = {up == 0 ? n[1] : n[0], n[2]};
     finest.periodic = {sides.periodic(up == 0 ? 1 : 0), sides.periodic(2)};

@@ -6,10 +6,10 @@
 //     ½ Σ_walls w (1/θ − 1) (u − J V)²/h²  added to the weak form,      M δV + ρ ΔV dt ν ∂/∂V = R:  a body's own row
 //
 // J is evaluated at the face itself, so liquid and body in common rotation have no strain. Momentum and angular momentum are conserved
-// between body and liquid. M, R: staggered/wall_grip.hpp.
+// between body and liquid. M, R: staggered/no_slip_walls.hpp.
 #pragma once
+#include "staggered/no_slip_walls.hpp"
 #include "staggered/state.hpp"
-#include "staggered/wall_grip.hpp"
 
 #include <array>
 #include <vector>
@@ -41,7 +41,7 @@ public:
     /// The bodies' part of conjugate gradients, as for the liquid: z = r/diagonal, returns r·z; p = z + β p; image = A p, returns p·image;
     /// updates V and r by α along p. `image` contains dt ν K p of inside faces.
     real precondition();
-    void turn(const MacState<D>& s, real beta, Faces& p);
+    void update_direction(const MacState<D>& s, real beta, Faces& p);
     real multiply(const MacState<D>& s, real dt_nu, const Faces& p, Faces& image);
     void walk(real alpha);
     /// Computes the friction impulses [N s], [N m s]; `image` contains dt ν K u of inside faces.
@@ -61,7 +61,7 @@ private:
     };
     void move_inside(const MacState<D>& s, const Twists& velocity, Faces& u) const;
     void pull(const MacState<D>& s, real dt_nu, const Faces& u, const Twists& velocity, Faces& image, Twists& bodies) const;
-    bool is_free(const Rider<D>& rider, std::size_t k) const { return rider.sticks && !rider.held[k]; }
+    bool is_free(const NoSlipBody<D>& body, std::size_t k) const { return body.coupled && !body.held[k]; }
 
     Grid<std::uint8_t, D> closes_;
     std::vector<Wall> walls_;

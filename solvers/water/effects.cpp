@@ -1,6 +1,6 @@
 #include "water/effects.hpp"
 
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "surface/start.hpp"
 
 namespace weir::water {
@@ -35,7 +35,7 @@ std::vector<scene::Variant> effect_schemas() {
                                            {"fluid.viscosity"}},
                                           surface::volume_control()};
     list.insert(list.end(), own.begin(), own.end());
-    list.push_back(geometry::hand_schema());
+    list.push_back(geometry::brush_schema());
     return list;
 }
 

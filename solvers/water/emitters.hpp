@@ -17,7 +17,7 @@ struct Emitter {
     struct Face {
         std::size_t at;
         real moves;  // velocity component of the liquid inside [m/s]
-        real pours;  // the part of it that is a flux for the pressure solve [m/s]
+        real emits;  // the part of it that is a flux for the pressure solve [m/s]
     };
     geometry::ShapePtr<D> shape;
     Vec<D> velocity{};

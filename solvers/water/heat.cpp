@@ -248,10 +248,10 @@ void LiquidHeat<D>::conduct(const MacState<D>& s, real volume, real area, real d
 }
 
 template <int D>
-bool LiquidHeat<D>::slow(MacState<D>& s, real dt) {
+bool LiquidHeat<D>::apply_ice_drag(MacState<D>& s, real dt) {
     const bool ice = max_over(s.extent(), [&](const Index<D>& I) { return -liquid_(I); }) > -1;
     if (!std::exchange(any_ice_, ice) && !ice) return false;
-    ice_.hold_back(s, liquid_, dt * drag_ / s.rho);
+    ice_.apply_drag(s, liquid_, dt * drag_ / s.rho);
     return true;
 }
 

@@ -37,11 +37,11 @@ public:
     /// Records the volume that has actually left the liquid, whose volume was `volume` before.
     void leaves(const MacState<D>& s, real lost, real volume);
     /// Adds interactive heating.
-    void follow(std::shared_ptr<Hand> hand) { supply_.follow(std::move(hand), melting_, enthalpy_); }
+    void follow(std::shared_ptr<BrushForcing> forcing) { supply_.follow(std::move(forcing), melting_, enthalpy_); }
     /// ρ dH/dt = ∇·(k ∇T) + q in the liquid of s.cells, with this volume and surface area.
     void conduct(const MacState<D>& s, real volume, real area, real dt);
     /// Multiplies u* by β and sets s.mobility to β. Returns whether any face has drag.
-    bool slow(MacState<D>& s, real dt);
+    bool apply_ice_drag(MacState<D>& s, real dt);
 
     /// Time to the next switching of a heater or keyframe, and the limit of explicit exchange through the surface [s].
     real max_dt(const MacState<D>& s, real area) const;

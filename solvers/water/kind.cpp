@@ -61,10 +61,10 @@ Key scheme_keys() {
 }
 
 /// Rejects keys of a scene that are not supported in parallel.
-void over_ranks(const scene::Scene& scene) {
+void check_parallel(const scene::Scene& scene) {
     scene::refuse_bodies(scene);
     if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting and boiling of a substance are");
-    scene::refuse_hand(scene);
+    scene::refuse_brush(scene);
 }
 
 }  // namespace
@@ -98,12 +98,12 @@ scene::SolverKind kind() {
                              {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project",
                               "extrapolate", "faces to markers"},
                              "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-                            over_ranks};
+                            check_parallel};
     water.holds_own_part = staggered::holds_own_planes;
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
-    water.by_all = [](const scene::Scene& scene, const Cut& cut) {
-        return staggered::pressure_by_all(scene, cut) + ", extrapolation of the level set into solids";
+    water.replicated_work = [](const scene::Scene& scene, const Cut& cut) {
+        return staggered::replicated_pressure(scene, cut) + ", extrapolation of the level set into solids";
     };
     return water;
 }

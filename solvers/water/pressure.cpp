@@ -39,7 +39,7 @@ template <int D>
 void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state) {
     const auto find = [&] {
         find_liquid(surface, closed);
-        bring_liquid();
+        refresh_liquid();
         state.cells = A_.cells;
         for (int a = 0; a < D; ++a) set_weights(surface, state, a);
         refresh(A_.weight[D - 1], frame_.periodic(D - 1));  // those above the last cells
@@ -51,8 +51,8 @@ void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std:
 
 /// In parallel, exchanges the flags of liquid cells at the subdomain boundaries.
 template <int D>
-void SurfacePressure<D>::bring_liquid() {
-    if (!over_ranks()) return;
+void SurfacePressure<D>::refresh_liquid() {
+    if (!is_distributed()) return;
     const std::array<Planes, 2> both{planes_of(A_.cells), planes_of(liquid_)};
     slabs().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));
 }
@@ -161,7 +161,7 @@ void SurfacePressure<D>::set_rhs(const MacState<D>& state, const LevelSet<D>& su
 }
 
 template <int D>
-void SurfacePressure<D>::hold_back(const MacState<D>& state) {
+void SurfacePressure<D>::apply_drag(const MacState<D>& state) {
     for (int a = 0; a < D; ++a) {
         real* weight = A_.weight[static_cast<std::size_t>(a)].data();
         const real* beta = state.mobility[static_cast<std::size_t>(a)].data();
@@ -177,7 +177,7 @@ void SurfacePressure<D>::hold_back(const MacState<D>& state) {
 /// In parallel: distributed where the method supports it, otherwise replicated on each rank.
 template <int D>
 const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
-    if (!over_ranks()) return solver_->solve(state.p, b_);
+    if (!is_distributed()) return solver_->solve(state.p, b_);
     if (solver_->shares_planes()) {
         const poisson::Report& report = solver_->solve(state.p, b_);
         refresh(state.p, frame_.periodic(D - 1));

@@ -28,7 +28,7 @@ public:
     /// distributed storage, otherwise all.
     void set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state);
     /// Applies the drag factor state.mobility to the faces' response to pressure; state.u must already contain it.
-    void hold_back(const MacState<D>& state);
+    void apply_drag(const MacState<D>& state);
     /// Makes the liquid divergence-free: solves for state.p, then u −= (dt/ρ) ∇p. `curvature` [1/m] at cells, or nullptr. The same solve
     /// computes the velocities of `bodies`, if given.
     const poisson::Report& project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature,
@@ -51,7 +51,7 @@ public:
 
 private:
     const poisson::Report& solve(MacState<D>& state);
-    void bring_liquid();
+    void refresh_liquid();
     void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
     real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;

@@ -8,9 +8,9 @@ namespace weir::water {
 /// Halo exchange of the velocity: as deep as the motion of the step plus the stencil at the end of a trajectory, and one plane for ghost
 /// markers.
 template <int D>
-void Water<D>::bring_faces(real dt) {
+void Water<D>::refresh_velocity(real dt) {
     whole_ = held_.cut().empty(), markers_whole_ = false;
-    if (!over_ranks()) return;
+    if (!is_distributed()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
     real fastest = max_magnitude(state_.u[D - 1]);
@@ -18,14 +18,14 @@ void Water<D>::bring_faces(real dt) {
     const real cells = dt * fastest * frame_.inv_h[D - 1];
     reach_ = cells < planes ? std::min(planes, static_cast<int>(std::ceil(cells)) + 3) : planes;
     refresh_faces(state_.u, frame_, reach_);
-    know_solids();
+    fill_solid_ghosts();
 }
 
 /// Extends solids into ghost planes as far as liquid moves, with distributed storage.
 template <int D>
-void Water<D>::know_solids() {
-    if (!held_.alone() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
-    solids_.know(state_, reach_, [&] {
+void Water<D>::fill_solid_ghosts() {
+    if (!held_.distributed() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
+    solids_.fill_ghosts(state_, reach_, [&] {
         for (auto* bytes : {&closed_, &near_solid_}) bytes->store().open(reach_, frame_.periodic(D - 1));
         mark_closed();
     });
@@ -33,8 +33,8 @@ void Water<D>::know_solids() {
 
 /// Removes markers beyond open sides; in parallel also migrates markers. Returns how many there were, and how many have left.
 template <int D>
-std::array<std::int64_t, 2> Water<D>::let_depart() {
-    if (!over_ranks()) {
+std::array<std::int64_t, 2> Water<D>::migrate_markers() {
+    if (!is_distributed()) {
         const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
         return {static_cast<std::int64_t>(all), static_cast<std::int64_t>(departed)};
     }
@@ -81,20 +81,20 @@ void Water<D>::check_own() const {
 
 /// Gathers the planes of other ranks for reading whole fields; collective.
 template <int D>
-void Water<D>::make_whole() const {
+void Water<D>::gather_whole() const {
     if (whole_) return;
-    if (held_.alone()) return bring_beside();
+    if (held_.distributed()) return fill_ghosts();
     const OwnPlanes mine(held_.cut());
     auto& own = const_cast<Water&>(*this);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(own.state_.u[a]);
     gather(own.state_.p);
-    own.surface_.make_whole();
+    own.surface_.gather_whole();
     whole_ = true;
 }
 
 /// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
 template <int D>
-void Water<D>::bring_beside() const {
+void Water<D>::fill_ghosts() const {
     const OwnPlanes mine = held_.own();
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all{planes_of(state.p)};
@@ -105,17 +105,17 @@ void Water<D>::bring_beside() const {
 
 template <int D>
 void Water<D>::gather_markers() const {
-    if (held_.cut().empty() || markers_whole_ || held_.alone()) return;
+    if (held_.cut().empty() || markers_whole_ || held_.distributed()) return;
     const OwnPlanes mine(held_.cut());
     markers_.gather(frame_, all_markers_);
     markers_whole_ = true;
 }
 
-#define WEIR_INSTANTIATE(D)                                      \
-    template void Water<D>::bring_faces(real);                   \
-    template std::array<std::int64_t, 2> Water<D>::let_depart(); \
-    template void Water<D>::check_own() const;                   \
-    template void Water<D>::make_whole() const;                  \
+#define WEIR_INSTANTIATE(D)                                           \
+    template void Water<D>::refresh_velocity(real);                   \
+    template std::array<std::int64_t, 2> Water<D>::migrate_markers(); \
+    template void Water<D>::check_own() const;                        \
+    template void Water<D>::gather_whole() const;                     \
     template void Water<D>::gather_markers() const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

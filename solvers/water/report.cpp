@@ -1,5 +1,5 @@
 // Output of the liquid: fields, integrals, checkpoints.
-#include "geometry/hand.hpp"
+#include "geometry/brush.hpp"
 #include "staggered/diagnostics.hpp"
 #include "surface/measure.hpp"
 #include "water/solver.hpp"
@@ -10,12 +10,12 @@ using poisson::Cell;
 
 template <int D>
 FieldSet Water<D>::fields() const {
-    make_whole();
+    gather_whole();
     gather_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
-    if (held_.alone()) set.cut = &held_.cut();
-    set.particles_in_parts = held_.alone();
+    if (held_.distributed()) set.cut = &held_.cut();
+    set.particles_in_parts = held_.distributed();
     const Markers<D>& markers = set.particles_in_parts ? markers_ : all_markers();
     const auto own_markers = [&] {
         const OwnPlanes mine = held_.own();
@@ -42,7 +42,7 @@ FieldSet Water<D>::fields() const {
 
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
     const auto [first, last] = markers_.own(frame_);
     const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
@@ -54,7 +54,7 @@ std::vector<Integral> Water<D>::integrals() const {
     list.insert(list.begin() + 2, {"marker_volume", list[0].unit, markers_.volume * count});
     list.push_back({"markers", "", count});
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
-    if (hand_) geometry::sum_up(*hand_, D, list);
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (heat_)
         for (auto& integral : heat_->integrals(state_, volume_target_)) list.push_back(std::move(integral));
     list.push_back({"escaped_markers", "", static_cast<real>(escaped)});
@@ -66,12 +66,12 @@ std::vector<Integral> Water<D>::integrals() const {
 
 template <int D>
 void Water<D>::save(Checkpoint& to) const {
-    make_whole();
+    gather_whole();
     const OwnPlanes mine = held_.own();
-    if (!held_.alone()) {  // global values, as in the whole state
+    if (!held_.distributed()) {  // global values, as in the whole state
         const_cast<LevelSet<D>&>(surface_).make_layers_whole();
-        const_cast<Leapfrog<D>&>(leapfrog_).make_whole();
-        const_cast<LiquidVolume<D>&>(volume_).make_whole();
+        const_cast<Leapfrog<D>&>(leapfrog_).gather_whole();
+        const_cast<LiquidVolume<D>&>(volume_).gather_whole();
     }
     const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(escaped_), sum_of_ranks(reseeded_)};
     state_.save(to);
@@ -90,7 +90,7 @@ void Water<D>::save(Checkpoint& to) const {
     to.put_value("water.reals", reals);
     to.put_value("water.counts", counts);
     to.put_value("water.rate", rate_);
-    if (hand_) hand_->save(to);
+    if (brush_forcing_) brush_forcing_->save(to);
     if (heat_) heat_->save(to);
 }
 
@@ -134,9 +134,9 @@ void Water<D>::restore(const Checkpoint& from) {
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
-    if (hand_ && from.has("hand")) hand_->restore(from);
-    whole_ = !held_.alone(), markers_whole_ = false;
-    make_whole();
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
+    whole_ = !held_.distributed(), markers_whole_ = false;
+    gather_whole();
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
     mark_liquid_faces();

@@ -13,11 +13,11 @@ template <int D>
 StepReport Water<D>::step(real dt) {
     const OwnPlanes mine = held_.own();
     const real kick = to_middle(dt);
-    bring_faces(dt);
+    refresh_velocity(dt);
     move_bodies(dt);
     move_solids(state_.time + dt);
     move_surface(dt);                                   // Dx/Dt = u for markers, Dφ/Dt = 0
-    pour_and_drain(dt);                                 // emitters, open sides
+    apply_sources_and_sinks(dt);                        // emitters, open sides
     redistribute_markers();                             // keeps the number of markers per cell in bounds
     correct_surface(dt);                                // particle level-set correction, redistancing
     conduct(dt);                                        // ρ dH/dt = ∇·(k ∇T) + q     only where a substance is named
@@ -40,7 +40,7 @@ StepReport Water<D>::step(real dt) {
             .residual_after = poisson.residual_after,
             .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]) * (kick / dt),
             .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0,
-            .viscous_turns = friction_ ? friction_->turns : 0};
+            .viscous_coupling_iterations = friction_ ? friction_->iterations : 0};
 }
 
 /// Advances the velocity to the middle of this step. Returns the duration of the forces.
@@ -56,7 +56,7 @@ real Water<D>::to_middle(real dt) {
 /// Initial rate of change of the velocity: the result of a step of dt without motion. The record of interactive forcing is restored.
 template <int D>
 void Water<D>::find_rate(real dt) {
-    const Hand account = hand_ ? *hand_ : Hand();
+    const BrushForcing account = brush_forcing_ ? *brush_forcing_ : BrushForcing();
     for (int a = 0; a < D; ++a) before_[a] = state_.u[a];
     leapfrog_.keep(state_.u);
     forces(dt);
@@ -64,15 +64,15 @@ void Water<D>::find_rate(real dt) {
     extend_velocity(dt);
     leapfrog_.begin(state_.u, dt);
     for (int a = 0; a < D; ++a) state_.u[a] = before_[a];
-    if (hand_) *hand_ = account;
+    if (brush_forcing_) *brush_forcing_ = account;
 }
 
 template <int D>
 void Water<D>::move_bodies(real dt) {
     if (!bodies_) return;
     const auto timed = passes_.time("bodies");
-    if (state_.grip) bodies_->continue_pressure(state_);
-    bodies_->fly(solids_, dt);
+    if (state_.no_slip_walls) bodies_->continue_pressure(state_);
+    bodies_->advance_free(solids_, dt);
 }
 
 template <int D>
@@ -85,7 +85,7 @@ void Water<D>::move_solids(real t) {
 template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    const AllPlanes all(!held_.alone());
+    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     mark_closed();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
@@ -121,7 +121,7 @@ void Water<D>::correct_surface(real dt) {
         const auto timed = passes_.time("level set");
         const auto& exempt = not_solved_for(dt);
         if (keeps_volume_) volume_.settle(surface_.phi, state_, exempt);
-        escaped_ += static_cast<std::int64_t>(surface_.rescue_escaped(markers_, keeps_volume_ ? &volume_.part() : nullptr));
+        escaped_ += static_cast<std::int64_t>(surface_.correct_with_particles(markers_, keeps_volume_ ? &volume_.part() : nullptr));
         if (keeps_volume_) volume_.correct(surface_, state_, exempt, volume_.courant(dt, rate_, norm(gravity_)));
         surface_.redistance();
     }
@@ -129,7 +129,7 @@ void Water<D>::correct_surface(real dt) {
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
-    if (!held_.alone()) surface_.make_whole();
+    if (!held_.distributed()) surface_.gather_whole();
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 
@@ -161,10 +161,10 @@ void Water<D>::conduct(real dt) {
 
 /// Drag of ice reduces the response of the velocity to pressure.
 template <int D>
-void Water<D>::slow(real dt) {
+void Water<D>::apply_ice_drag(real dt) {
     if (!heat_) return;
     const auto timed = passes_.time("ice");
-    if (heat_->slow(state_, dt)) pressure_.hold_back(state_);
+    if (heat_->apply_ice_drag(state_, dt)) pressure_.apply_drag(state_);
 }
 
 template <int D>
@@ -203,13 +203,13 @@ void Water<D>::forces(real dt) {
         const auto timed = passes_.time("walls");
         set_fixed_faces();
     }
-    if (viscosity_) rub(dt);
+    if (viscosity_) apply_viscosity(dt);
 }
 
 template <int D>
 poisson::Report Water<D>::project_once(real dt, real kick, bool again) {
     const auto timed = passes_.time("project");
-    impose_emitters(dt, &Emitter<D>::Face::pours);
+    impose_emitters(dt, &Emitter<D>::Face::emits);
     const Grid<real, D>* curvature = options_.sigma > 0 ? &curvature_ : nullptr;
     if (again) return pressure_.project_again(state_, surface_, kick, options_.sigma, curvature);
     return pressure_.project(state_, surface_, kick, options_.sigma, curvature, bodies_.get(), &solids_);
@@ -217,7 +217,7 @@ poisson::Report Water<D>::project_once(real dt, real kick, bool again) {
 
 template <int D>
 poisson::Report Water<D>::project(real dt, real kick) {
-    slow(kick);
+    apply_ice_drag(kick);
     poisson::Report report = staggered::explained_by_room(state_, solids_, [&] { return project_once(dt, kick, false); });
     if (viscosity_ && !bodies_) report = balance_friction(dt, kick, report);
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);

@@ -65,10 +65,10 @@ struct WaterOptions {
 template <int D>
 struct StepOfFriction {
     MacVelocity<D> before, forces;  // u at the start of the step; dt f
-    std::array<Grid<real, D>, D> felt;
-    Grid<real, D> p, residual;  // the pressure used in felt; F(p) − p
+    std::array<Grid<real, D>, D> with_pressure;
+    Grid<real, D> p, residual;  // the pressure used in with_pressure; F(p) − p
     AndersonMixing<D> mixing;
-    int turns = 0;  // iterations after the first
+    int iterations = 0;  // iterations after the first
     explicit StepOfFriction(const MacState<D>& state);
     std::size_t bytes() const;
 };
@@ -82,10 +82,10 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
-    Hand* hand() const override { return hand_.get(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
     std::vector<EditableField> editable() override;
     void edited(const EditableField& field) override;
     bool add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) override;
@@ -111,7 +111,7 @@ private:
     void refuse_buried_emitters(const scene::Scene& scene) const;
     void fill_with_liquid(const scene::Scene& scene);
     void seed_markers();
-    void stick_to_bodies(const scene::Scene& scene);
+    void couple_friction(const scene::Scene& scene);
 
     // The passes of a step, in order (solver.cpp, sources.cpp)
     real to_middle(real dt);
@@ -121,26 +121,26 @@ private:
     void place_solids(real t);
     void mark_closed();
     void move_surface(real dt);
-    void pour_and_drain(real dt);
+    void apply_sources_and_sinks(real dt);
     void redistribute_markers();
     bool fill_cell(const Index<D>& I, int wanted);
-    std::int64_t pour(const Emitter<D>& emitter, real dt);
+    std::int64_t emit(const Emitter<D>& emitter, real dt);
     bool is_free(const Vec<D>& x) const;
     void impose_emitters(real dt, real Emitter<D>::Face::*speed);
     void carry_emitters_velocity(real dt);
-    void pour_and_drain_by_hand();
+    void apply_brush_sources();
     const Grid<std::uint8_t, D>& not_solved_for(real dt);
     void curvature();
     void correct_surface(real dt);
     void evaporate(real dt);
     void conduct(real dt);
-    void slow(real dt);
+    void apply_ice_drag(real dt);
     void momentum_to_faces(real dt);
     void remember_velocity();
-    void rub(real dt);
+    void apply_viscosity(real dt);
     poisson::Report balance_friction(real dt, real kick, poisson::Report report);
-    void what_friction_feels(real dt);
-    void rub_again(real dt);
+    void velocity_with_pressure(real dt);
+    void repeat_viscosity(real dt);
     void mix_pressures();
     poisson::Report project_once(real dt, real kick, bool again);
     void forces(real dt);
@@ -149,13 +149,13 @@ private:
     void momentum_to_markers(real dt);
 
     // In parallel (ranks.cpp)
-    void bring_faces(real dt);
-    std::array<std::int64_t, 2> let_depart();
+    void refresh_velocity(real dt);
+    std::array<std::int64_t, 2> migrate_markers();
     void check_own() const;
-    void make_whole() const;
-    void bring_beside() const;
+    void gather_whole() const;
+    void fill_ghosts() const;
     void gather_markers() const;
-    void know_solids();
+    void fill_solid_ghosts();
     void restore_markers(const Checkpoint& from);
     const Markers<D>& all_markers() const { return held_.cut().empty() ? markers_ : all_markers_; }
 
@@ -202,11 +202,11 @@ private:
     std::unique_ptr<LiquidHeat<D>> heat_;          // nullptr where the scene names no substance
     real volume_target_ = 0;                       // the volume balance: start + poured in − drained [m^D]
     std::int64_t steps_ = 0;
-    real rate_ = 0;                            // max |u|/h over known faces [1/s]
-    int up_ = 1;                               // the axis closest to gravity
-    std::int64_t escaped_ = 0, reseeded_ = 0;  // in parallel: on this rank
-    real volume_shift_ = 0;                    // total displacement by volume control [m]
-    std::shared_ptr<Hand> hand_;               // nullptr where the scene has none
+    real rate_ = 0;                                // max |u|/h over known faces [1/s]
+    int up_ = 1;                                   // the axis closest to gravity
+    std::int64_t escaped_ = 0, reseeded_ = 0;      // in parallel: on this rank
+    real volume_shift_ = 0;                        // total displacement by volume control [m]
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
     int reach_ = 0;  // ghost planes that motion reads in this step
     mutable bool whole_ = true,

@@ -60,8 +60,8 @@ bool Water<D>::is_free(const Vec<D>& x) const {
 /// all points in air inside it do. So the poured volume is area × speed × time, independent of the markers' density and speed. Markers have
 /// already moved: the lattice is that at the end of the step, and in the first step points that have left the emitter again count too.
 template <int D>
-std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
-    std::int64_t poured = 0;
+std::int64_t Water<D>::emit(const Emitter<D>& emitter, real dt) {
+    std::int64_t emitted = 0;
     const real from = std::max(state_.time, emitter.start), to = std::min(state_.time + dt, emitter.end);
     const real running = to - emitter.start;
     const bool starts = state_.time <= emitter.start;  // this step is the first in which it is open
@@ -81,12 +81,12 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
                 x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
                        emitter.velocity[d] * running;
             }
-            if (over_ranks() && !markers_.holds(frame_, held_.cut(), slabs().rank(), frame_.cell_of(x)[D - 1])) continue;
+            if (is_distributed() && !markers_.holds(frame_, held_.cut(), slabs().rank(), frame_.cell_of(x)[D - 1])) continue;
             const Vec<D> earlier = x - (to - from) * emitter.velocity;
             const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
             const bool enters = now && !before, fills = starts && before && !(surface_.phi(frame_.cell_of(earlier)) < 0);
             if ((enters || fills) && is_free(x)) {
-                markers_.add(x, emitter.velocity), poured += is_own_plane(frame_.cell_of(x)[D - 1]);
+                markers_.add(x, emitter.velocity), emitted += is_own_plane(frame_.cell_of(x)[D - 1]);
                 volume_.add(frame_.cell_of(x), real(1) / Markers<D>::per_cell);
             }
         }
@@ -96,41 +96,41 @@ std::int64_t Water<D>::pour(const Emitter<D>& emitter, real dt) {
         if (emitter.shape->distance(frame_.centre(I)) < norm(frame_.h) && (closed_.empty() || !closed_(I)))
             surface_.phi(I) = std::min(surface_.phi(I), emitter.shape->distance(frame_.centre(I)));
     });
-    return poured;
+    return emitted;
 }
 
 /// Removes markers beyond open sides; the volume balance decreases by their share, because reseeding changes the number of markers and no
 /// marker has a fixed volume. Open emitters add markers.
 template <int D>
-void Water<D>::pour_and_drain(real dt) {
+void Water<D>::apply_sources_and_sinks(real dt) {
     const auto timed = passes_.time("sort markers");
-    const auto [all, departed] = let_depart();
+    const auto [all, departed] = migrate_markers();
     if (!keeps_volume_ && departed > 0) volume_target_ *= static_cast<real>(all - departed) / static_cast<real>(all);
-    bool pours = false;
-    std::int64_t poured = 0;
+    bool emits = false;
+    std::int64_t emitted = 0;
     for (const auto& emitter : emitters_)
-        if (emitter.works(state_.time, state_.time + dt)) pours = true, poured += pour(emitter, dt);
-    if (pours) volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(sum_of_ranks(poured));
+        if (emitter.works(state_.time, state_.time + dt)) emits = true, emitted += emit(emitter, dt);
+    if (emits) volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(sum_of_ranks(emitted));
     markers_.sort(frame_);
-    if (hand_) pour_and_drain_by_hand();
+    if (brush_forcing_) apply_brush_sources();
 }
 
 /// Interactive pouring adds a marker to each empty half cell of the brush, so the rate is limited by free space. Draining removes the
 /// markers under the brush. Level set and volume balance are updated.
 template <int D>
-void Water<D>::pour_and_drain_by_hand() {
-    const auto brush = hand_->at<D>(state_.time);
-    const bool pours = brush.kind == HandKind::pour;
-    if (!pours && brush.kind != HandKind::drain) return;
+void Water<D>::apply_brush_sources() {
+    const auto brush = brush_forcing_->at<D>(state_.time);
+    const bool emits = brush.kind == BrushKind::pour;
+    if (!emits && brush.kind != BrushKind::drain) return;
     const std::size_t all = markers_.count();
-    if (!pours && all == 0) return;
-    const real each = pours ? frame_.cell_volume() / Markers<D>::per_cell : volume_target_ / static_cast<real>(all);
+    if (!emits && all == 0) return;
+    const real each = emits ? frame_.cell_volume() / Markers<D>::per_cell : volume_target_ / static_cast<real>(all);
     const auto account = [&](const Vec<D>& u, real volume) {
-        for (int a = 0; a < D; ++a) hand_->impulse[a] += state_.rho * volume * u[a];
-        hand_->mass += state_.rho * volume;
+        for (int a = 0; a < D; ++a) brush_forcing_->impulse[a] += state_.rho * volume * u[a];
+        brush_forcing_->mass += state_.rho * volume;
         volume_target_ += volume;
     };
-    if (pours) {
+    if (emits) {
         for (std::size_t cell = 0; cell < product(frame_.cells); ++cell) {
             const Index<D> I = frame_.index_of(cell);
             const Vec<D> centre = frame_.centre(I);
@@ -160,7 +160,7 @@ void Water<D>::pour_and_drain_by_hand() {
             surface_.phi(I) = std::max(surface_.phi(I), brush.radius - norm(frame_.centre(I) - brush.centre));
         });
     }
-    if (markers_.count() != all || !pours) markers_.sort(frame_);
+    if (markers_.count() != all || !emits) markers_.sort(frame_);
 }
 
 /// Sets the faces of an emitter's cells: to the velocity of the liquid inside, or to the flux seen by the pressure (emitters.hpp).
@@ -222,7 +222,7 @@ void Water<D>::redistribute_markers() {
     const auto row = static_cast<std::size_t>(frame_.cells[0]);
     const std::size_t cells = product(frame_.cells);
     for (std::size_t cell = 0; cell < cells; ++cell) {
-        if (over_ranks() && cell % row == 0 && !markers_.holds(frame_, held_.cut(), slabs().rank(), frame_.index_of(cell)[D - 1])) {
+        if (is_distributed() && cell % row == 0 && !markers_.holds(frame_, held_.cut(), slabs().rank(), frame_.index_of(cell)[D - 1])) {
             cell += row - 1;
             continue;
         }
@@ -246,7 +246,7 @@ void Water<D>::redistribute_markers() {
 }
 
 #define WEIR_INSTANTIATE(D)                                                  \
-    template void Water<D>::pour_and_drain(real);                            \
+    template void Water<D>::apply_sources_and_sinks(real);                   \
     template void Water<D>::impose_emitters(real, real Emitter<D>::Face::*); \
     template void Water<D>::carry_emitters_velocity(real);                   \
     template const Grid<std::uint8_t, D>& Water<D>::not_solved_for(real);    \

@@ -1,6 +1,6 @@
 // Initial state of a scene with liquid: the level set of its shapes, its markers, its velocity.
-#include "core/cut_by_work.hpp"
-#include "geometry/hand.hpp"
+#include "core/load_balance.hpp"
+#include "geometry/brush.hpp"
 #include "scene/names.hpp"
 #include "staggered/initial.hpp"
 #include "staggered/own_planes.hpp"
@@ -31,8 +31,8 @@ Water<D>::Water(const scene::Scene& scene)
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
       gravity_(gravity_of<D>(scene)),
       up_(up_axis<D>(gravity_)),
-      hand_(geometry::make_hand(scene, kinds_of_hand(scene))) {
-    if (hand_) effects_.add("hand", hand_effect<D>(hand_, Stage::force));
+      brush_forcing_(geometry::make_brush(scene, kinds_of_brush(scene))) {
+    if (brush_forcing_) effects_.add("hand", brush_effect<D>(brush_forcing_, Stage::force));
     refuse_flat_cells(scene, frame_);
     markers_ = all_markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
@@ -64,31 +64,31 @@ Water<D>::Water(const scene::Scene& scene)
     }
     fill_with_liquid(scene);
     if (bodies_) bodies_->start(state_, solids_);
-    if (viscosity_ && bodies_) stick_to_bodies(scene);
-    if (bodies_ && hand_) bodies_->follow(hand_, scene);
+    if (viscosity_ && bodies_) couple_friction(scene);
+    if (bodies_ && brush_forcing_) bodies_->follow(brush_forcing_, scene);
     if (LiquidHeat<D>::named(scene)) heat_ = std::make_unique<LiquidHeat<D>>(scene, state_, frame_, volume_target_);
-    if (heat_ && hand_) heat_->follow(hand_);
+    if (heat_ && brush_forcing_) heat_->follow(brush_forcing_);
     set_initial_velocity(state_, scene);
     set_fixed_faces();
     extend_velocity(0);
     seed_markers();
     held_.made();
-    whole_ = !held_.alone();
+    whole_ = !held_.distributed();
 }
 
 /// The initial pressure for friction: hydrostatic, zero in the highest liquid cell.
 template <int D>
-void Water<D>::stick_to_bodies(const scene::Scene& scene) {
-    refuse_friction_of_before(*scene.effect("viscosity"), scene);
+void Water<D>::couple_friction(const scene::Scene& scene) {
+    refuse_explicit_friction(*scene.effect("viscosity"), scene);
     const auto& all = bodies_->bodies().all();
     if (std::none_of(all.begin(), all.end(), [](const auto& body) { return body.no_slip; })) return;
-    bodies_->stick(state_, true);
+    bodies_->couple_friction(state_, true);
     const auto is_liquid = [&](const Index<D>& I) { return state_.cells(I) == poisson::Cell::fluid; };
     const real least = -max_over(state_.extent(), [&](const Index<D>& I) { return is_liquid(I) ? -state_.p(I) : -infinity; });
     for_each_cell(state_.extent(), [&](const Index<D>& I) {
         if (is_liquid(I)) state_.p(I) -= least;
     });
-    viscosity_->hold_bodies(state_);
+    viscosity_->enforce_bodies(state_);
 }
 
 /// Emitters, including inflow sides, which are emitters of one layer of cells.
@@ -159,10 +159,11 @@ template <int D>
 void Water<D>::seed_markers() {
     const std::size_t cells = product(frame_.cells);
     refresh_faces(state_.u, frame_, 3);  // ghost markers of one plane read the faces around them
-    if (!over_ranks()) markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
+    if (!is_distributed())
+        markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);
-        if (over_ranks() && !markers_.holds(frame_, held_.cut(), slabs().rank(), I[D - 1])) continue;
+        if (is_distributed() && !markers_.holds(frame_, held_.cut(), slabs().rank(), I[D - 1])) continue;
         if (surface_.phi(I) > norm(frame_.h)) continue;
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);

@@ -1,6 +1,6 @@
 // Estimate of what a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of surface/, pass by pass.
 #include "poisson/traffic.hpp"
-#include "geometry/wet_part.hpp"
+#include "geometry/liquid_fraction.hpp"
 #include "staggered/own_planes.hpp"
 #include "surface/traffic.hpp"
 #include "water/solver.hpp"
@@ -53,7 +53,7 @@ public:
         surface_.continue_velocity(tally_, 2);
         sync();
         sync();  // after the forces
-        if (viscous()) rub();
+        if (viscous()) apply_viscosity();
         project();
         surface_.continue_velocity(tally_, surface_.layers - 1);
         sync();
@@ -86,12 +86,12 @@ private:
         const int numbers = D + (transfer_ == "grid" ? 0 : D) + (transfer_ == "apic" ? D * D : 0);
         const auto bytes_in = [&](int at) {
             const double markers =
-                geometry::wet_part_of_plane<D>(scene_, at) * static_cast<double>(cells_.bytes / sizeof(real)) * Markers<D>::per_cell;
+                geometry::liquid_fraction_of_plane<D>(scene_, at) * static_cast<double>(cells_.bytes / sizeof(real)) * Markers<D>::per_cell;
             return static_cast<std::size_t>(std::llround(markers)) * static_cast<std::size_t>(numbers) * sizeof(real);
         };
         const int first = tally_.cut().begin(rank), last = tally_.cut().end(rank, n_[D - 1]) - 1;
-        if (rank > 0 || ring_) tally_.parcel(bytes_in(first));
-        if (rank + 1 < ranks || ring_) tally_.parcel(bytes_in(last));
+        if (rank > 0 || ring_) tally_.message(bytes_in(first));
+        if (rank + 1 < ranks || ring_) tally_.message(bytes_in(last));
         if (open) tally_.everywhere(sizeof(std::int64_t), 2, sizeof(std::int64_t) * static_cast<std::size_t>(ranks));
     }
     /// Redistancing; then the liquid flags and the matrix.
@@ -108,28 +108,28 @@ private:
         sync();  // weights above the last cells
     }
     /// Velocity and liquid fractions at the subdomain boundaries; then per iteration a direction and two inner products.
-    void rub() {
+    void apply_viscosity() {
         tally_.refresh(faces_, 1);
         tally_.refresh({cells_}, 2);
-        continue_felt();
+        continue_with_pressure();
         tally_.refresh(faces_, 1, shape_.viscous_iterations);
-        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + shape_.viscous_turns + 2 * shape_.viscous_iterations);
+        tally_.gather({sizeof(real), faces_[D - 1].count}, 1 + shape_.viscous_coupling_iterations + 2 * shape_.viscous_iterations);
         sync(), sync();
     }
     /// Marks and values, two layers.
-    void continue_felt() { tally_.refresh(faces_, 1, 4); }
+    void continue_with_pressure() { tally_.refresh(faces_, 1, 4); }
     /// Coupling iterations of friction and pressure. The estimate is low by some four messages in a thousand where there are any: norms,
     /// mixing of pressures, and the velocity at subdomain boundaries.
     void balance_friction() {
-        const int turns = shape_.viscous_turns;
-        for (int turn = 0; turn <= turns; ++turn) {
-            continue_felt();
+        const int iterations = shape_.viscous_coupling_iterations;
+        for (int iteration = 0; iteration <= iterations; ++iteration) {
+            continue_with_pressure();
             tally_.gather({sizeof(real), faces_[D - 1].count}, 4);
             tally_.refresh(faces_, 1);
-            if (turn == turns) return;
-            const int mixed = std::min(turn - 1, AndersonMixing<D>::depth);
-            if (turn > 0) tally_.gather({sizeof(real), n_[D - 1]}, mixed * (mixed + 3) / 2);
-            if (turn > 0) tally_.refresh({cells_}, 1), continue_felt();
+            if (iteration == iterations) return;
+            const int mixed = std::min(iteration - 1, AndersonMixing<D>::depth);
+            if (iteration > 0) tally_.gather({sizeof(real), n_[D - 1]}, mixed * (mixed + 3) / 2);
+            if (iteration > 0) tally_.refresh({cells_}, 1), continue_with_pressure();
             sync(), sync(), sync();
             solve(1);
         }
@@ -138,7 +138,7 @@ private:
     poisson::Runs runs() const {
         const int first = tally_.cut().begin(tally_.rank()), end = tally_.cut().end(tally_.rank(), n_[D - 1]);
         const int rows = D == 2 ? 1 : n_[1];
-        const auto wet = [&](int at) { return std::llround(geometry::wet_part_of_plane<D>(scene_, at) * rows); };
+        const auto wet = [&](int at) { return std::llround(geometry::liquid_fraction_of_plane<D>(scene_, at) * rows); };
         poisson::Runs runs;
         for (int at = first; at < end; ++at) runs.own += static_cast<std::size_t>(wet(at));
         if (tally_.rank() > 0) runs.below = static_cast<std::size_t>(wet(first - 1));
@@ -151,7 +151,7 @@ private:
     }
     void project() {
         if (windowed_) poisson::tally_multigrid_setup<D>(n_, periodic_, weight_, runs(), tally_);
-        solve(shape_.iterations - shape_.viscous_turns);
+        solve(shape_.iterations - shape_.viscous_coupling_iterations);
         if (viscous()) balance_friction();
         sync();
         largest(n_[D - 1]);  // maximum divergence

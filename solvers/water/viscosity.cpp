@@ -11,7 +11,7 @@ template <int D>
 SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick)
     : frame_(frame), sides_(&state.sides), least_theta_(theta), theta_(theta), solids_stick_(solids_stick), cell_(frame.cells) {
     for (int a = 0; a < D; ++a)
-        for (Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_, &felt_})
+        for (Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_, &with_pressure_})
             (*faces)[static_cast<std::size_t>(a)] = Grid<real, D>(state.u[a].extent());
     reserve_unknowns();
     for (int a = 0; a < D; ++a)
@@ -201,7 +201,7 @@ void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu, real reduc
     real rz = dot(r_, p_);
     if (bodies_) {
         rz += bodies_->precondition();
-        bodies_->turn(state, 0, p_);
+        bodies_->update_direction(state, 0, p_);
     }
     const real target = reduction * rz;
     int count = 0;
@@ -235,20 +235,20 @@ void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu, real reduc
             const auto at = static_cast<std::size_t>(a);
             p_[at](I) = ap_[at](I) + beta * p_[at](I);
         });
-        if (bodies_) bodies_->turn(state, beta, p_);
+        if (bodies_) bodies_->update_direction(state, beta, p_);
         rz = rz_next;
     }
 }
 
 template <int D>
-void SurfaceViscosity<D>::hold_bodies(const MacState<D>& state) {
+void SurfaceViscosity<D>::enforce_bodies(const MacState<D>& state) {
     bodies_ = std::make_unique<BodyRows<D>>(state);
 }
 
 /// dt ν K u on the faces inside bodies.
 template <int D>
 void SurfaceViscosity<D>::strain_inside(const MacState<D>& state, const Faces& u, real dt_nu, real fixed, Faces& out) const {
-    const auto& inside = state.grip->inside;
+    const auto& inside = state.no_slip_walls->inside;
     parallel_for(0, static_cast<int>(inside.size()), [&](int i) {
         const InsideFace<D>& f = inside[static_cast<std::size_t>(i)];
         out[static_cast<std::size_t>(f.axis)](f.face) = dt_nu * stress_divergence(u, f.axis, f.face, fixed);
@@ -264,8 +264,8 @@ void SurfaceViscosity<D>::set_theta(real dt_nu) {
 }
 
 template <int D>
-void SurfaceViscosity<D>::add_felt(MacState<D>& state, real sign) const {
-    for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += sign * felt_[static_cast<std::size_t>(a)](I); });
+void SurfaceViscosity<D>::add_with_pressure(MacState<D>& state, real sign) const {
+    for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += sign * with_pressure_[static_cast<std::size_t>(a)](I); });
 }
 
 template <int D>
@@ -279,18 +279,18 @@ void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, 
     set_weights(state, surface, closed);
     list_unknowns();
     for (int a = 0; a < D; ++a)
-        for (Faces* faces : {&p_, &x_, &felt_}) (*faces)[static_cast<std::size_t>(a)].fill(0);
-    if (forces) foresee(state, surface, dt, *forces, at_surface);
+        for (Faces* faces : {&p_, &x_, &with_pressure_}) (*faces)[static_cast<std::size_t>(a)].fill(0);
+    if (forces) predict_from_pressure(state, surface, dt, *forces, at_surface);
     if (bodies_) {
         list_walls(state);
         bodies_->add_diagonal(state, dt_nu, diagonal_);
-        add_felt(state, 1);
+        add_with_pressure(state, 1);
         bodies_->carry(state, state.u.face);
     }
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
         r_[at](I) = -dt_nu * stress_divergence(state.u.face, a, I, 1);
-        if (!bodies_) r_[at](I) += mass_[at](I) * felt_[at](I);
+        if (!bodies_) r_[at](I) += mass_[at](I) * with_pressure_[at](I);
     });
     if (bodies_) {
         strain_inside(state, state.u.face, -dt_nu, 1, r_);
@@ -304,7 +304,7 @@ void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, 
         strain_inside(state, state.u.face, dt_nu, 1, ap_);
         bodies_->finish(state, dt_nu, state.u.face, ap_);
     }
-    add_felt(state, -1);
+    add_with_pressure(state, -1);
     sync_periodic(state.u, state.sides);
 }
 
@@ -312,7 +312,7 @@ template <int D>
 std::size_t SurfaceViscosity<D>::bytes() const {
     std::size_t total = cell_.bytes();
     for (const auto& grid : edge_) total += grid.bytes();
-    for (const Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_, &felt_})
+    for (const Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_, &with_pressure_})
         for (const auto& grid : *faces) total += grid.bytes();
     for (const auto& list : unknown_) total += list.capacity() * sizeof(Index<D>);
     total += blocks_.capacity() * sizeof(Block) + first_block_.capacity() * sizeof(std::size_t) + block_sum_.capacity() * sizeof(real);

@@ -27,10 +27,10 @@ class SurfaceViscosity {
 public:
     static constexpr int edges = D * (D - 1) / 2;
     SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick);
-    /// Adds the no-slip bodies of state.grip.
-    void hold_bodies(const MacState<D>& state);
+    /// Adds the no-slip bodies of state.no_slip_walls.
+    void enforce_bodies(const MacState<D>& state);
     /// Sets the tolerance of the residual relative to the right-hand side; default 1e-9.
-    void aim(real tolerance) { target_ = tolerance * tolerance; }
+    void set_tolerance(real tolerance) { target_ = tolerance * tolerance; }
     using Faces = std::array<Grid<real, D>, D>;
     /// Advances u by Δ − dt a over dt. `forces`: dt f, or nullptr. a is computed from the last pressure, state.p (van Kan 1986), as deep in
     /// the liquid as it is known. `at_surface`: a on faces cut by the surface; otherwise it is extrapolated from inside. Throws
@@ -38,14 +38,14 @@ public:
     void apply(MacState<D>& state, const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, real dt,
                const MacVelocity<D>* forces = nullptr, const Faces* at_surface = nullptr);
     /// Repeats the step with another dt a, whose values are used on faces of liquid cells: `u` = u + Δ.
-    void apply_again(const MacState<D>& state, const Faces& felt, real dt, Faces& u);
+    void apply_again(const MacState<D>& state, const Faces& with_pressure, real dt, Faces& u);
     /// Extrapolates dt a from faces of liquid cells to the others that friction reads.
-    void continue_felt(const MacState<D>& state, Faces& felt);
-    /// Bound of the splitting error: the effect of friction on the difference between `felt` and the dt a of the last solve. It is relative
-    /// to the norm of u plus `least` times that of the forces.
-    real unseen(const MacState<D>& state, const Faces& felt, real dt, const Faces& forces, real least);
+    void continue_with_pressure(const MacState<D>& state, Faces& with_pressure);
+    /// Bound of the splitting error: the effect of friction on the difference between `with_pressure` and the dt a of the last solve. It is
+    /// relative to the norm of u plus `least` times that of the forces.
+    real unseen(const MacState<D>& state, const Faces& with_pressure, real dt, const Faces& forces, real least);
     /// dt a of the last solve.
-    const Faces& felt() const { return felt_; }
+    const Faces& with_pressure() const { return with_pressure_; }
     std::size_t bytes() const;
     int iterations() const { return iterations_; }
     /// θ of the last step.
@@ -65,11 +65,11 @@ private:
     void list_unknowns();
     void list_walls(const MacState<D>& state);
     void set_theta(real dt_nu);
-    void foresee(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
-                 const Faces* at_surface = nullptr);
-    void continue_to_surface(Faces& felt);
+    void predict_from_pressure(const MacState<D>& state, const LevelSet<D>& surface, real dt, const MacVelocity<D>& forces,
+                               const Faces* at_surface = nullptr);
+    void continue_to_surface(Faces& with_pressure);
     bool step(int a, Index<D>& I, int d, int by) const;
-    void add_felt(MacState<D>& state, real sign) const;
+    void add_with_pressure(MacState<D>& state, real sign) const;
     void strain_inside(const MacState<D>& state, const Faces& u, real dt_nu, real fixed, Faces& out) const;
     void set_diagonal(real s);
     void solve(const MacState<D>& state, real dt_nu, real target);
@@ -94,7 +94,7 @@ private:
     Grid<real, D> cell_;                            // liquid fraction of cells
     std::array<Grid<real, D>, edges> edge_;         // ... of the boxes around edges, 0 where no shear acts
     Faces mass_, x_, r_, p_, ap_, diagonal_;        // mass_ < 0: not an unknown
-    Faces felt_;                                    // dt a
+    Faces with_pressure_;                           // dt a
     std::array<std::vector<Index<D>>, D> unknown_;  // faces reached by liquid or its stress, in the order of the grid
     std::vector<Block> blocks_;                     // plane by plane, within each axis by axis
     std::vector<std::size_t> first_block_;          // of each plane of faces, and the end of the last

@@ -58,13 +58,13 @@ void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D
         });
     }
     if (bodies_)
-        for (const InsideFace<D>& f : state.grip->inside) mass_[static_cast<std::size_t>(f.axis)](f.face) = -1;
+        for (const InsideFace<D>& f : state.no_slip_walls->inside) mass_[static_cast<std::size_t>(f.axis)](f.face) = -1;
 }
 
 /// The walls of bodies beside unknown faces: their liquid fraction is that of the edge, or cell, between the face and the one inside.
 template <int D>
 void SurfaceViscosity<D>::list_walls(const MacState<D>& state) {
-    for (const WallLink<D>& link : state.grip->links) {
+    for (const WallLink<D>& link : state.no_slip_walls->links) {
         if (mass_[static_cast<std::size_t>(link.axis)](link.node) < 0) continue;
         const bool above = link.beyond[link.across] > link.node[link.across];
         const int a = link.axis, b = link.across;

@@ -1,6 +1,6 @@
 // Estimated work of a step per plane of cells, for load balancing.
-#include "core/cut_by_work.hpp"
-#include "geometry/wet_part.hpp"
+#include "core/load_balance.hpp"
+#include "geometry/liquid_fraction.hpp"
 #include "water/solver.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "waves/basin.hpp"
 
-#include "core/in_turn.hpp"
+#include "core/rank_ordered.hpp"
 
 #include <cmath>
 
@@ -90,7 +90,7 @@ Sum Basin::sum_at(const F& add) const {
         for (int m = series_.held().begin; m < series_.held().end; ++m)
             for (int n = m == 0 ? 1 : 0; n < nz_; ++n) add(sum, m, n);
     };
-    if (series_.in_parts()) return in_turn(Sum{}, add_held);
+    if (series_.in_parts()) return rank_ordered_reduction(Sum{}, add_held);
     Sum sum{};
     add_held(sum);
     return sum;

@@ -184,7 +184,7 @@ std::vector<Variant> effects() {
 }
 
 /// Everything is distributed.
-void over_ranks(const scene::Scene&) {}
+void check_parallel(const scene::Scene&) {}
 
 /// Messages of a step in parallel: each sum of a sea's or a basin's waves in 3D is transposed once. While the surface is not folded, its
 /// least Jacobian is reduced over the ranks.
@@ -206,7 +206,7 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     const Cut columns = cut_of_columns(count, of.ranks);
     const auto own = static_cast<std::size_t>(columns.end(of.rank, count) - columns.begin(of.rank));
     for (int peer = 0; peer < of.ranks; ++peer)
-        if (peer != of.rank) tally.parcel(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * each, sums);
+        if (peer != of.rank) tally.message(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * each, sums);
     tally.sent().rounds += sums;
     return tally.sent();
 }
@@ -228,7 +228,7 @@ scene::SolverKind kind() {
             {{"level_set", "velocity", "position", "jacobian"},
              {"surface", "water"},
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
-            over_ranks,
+            check_parallel,
             scene::Shared::by_planes,
             [](const scene::Scene& scene, const Cut&) { return std::string(scene.dim() == 2 ? "the surface's one row" : ""); },
             holds_own_planes,

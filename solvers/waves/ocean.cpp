@@ -1,6 +1,6 @@
 #include "waves/ocean.hpp"
 
-#include "core/in_turn.hpp"
+#include "core/rank_ordered.hpp"
 #include "waves/random.hpp"
 
 #include <cmath>
@@ -132,10 +132,10 @@ void Ocean::set_amplitudes() {
 void Ocean::set_time(real t) {
     t_ = t;
     turned_ = synthesis_.own_columns();
-    turn(turned_.begin, turned_.end);
+    advance_phases(turned_.begin, turned_.end);
 }
 
-void Ocean::turn(int begin, int end) const {
+void Ocean::advance_phases(int begin, int end) const {
     const real t = t_;
     parallel_for(begin, end, [&](int m) {
         for (std::size_t at = plane_.at(m, 0), last = plane_.at(m + 1, 0); at < last; ++at) {
@@ -150,8 +150,8 @@ void Ocean::turn(int begin, int end) const {
 /// A point value needs every wave: a rank that stores all of them advances also the others' waves.
 void Ocean::turn_all() const {
     if (turned_ == PlaneRange{0, plane_.columns()}) return;
-    turn(0, turned_.begin);
-    turn(turned_.end, plane_.columns());
+    advance_phases(0, turned_.begin);
+    advance_phases(turned_.end, plane_.columns());
     turned_ = {0, plane_.columns()};
 }
 
@@ -222,7 +222,7 @@ Sum Ocean::sum_at(real x, real z, const F& add) const {
                 if (const Wave w = wave(m, n); w.k > 0) add(sum, w, plane_.at(m, n), along_x * along_z[static_cast<std::size_t>(n)]);
         }
     };
-    if (!plane_.whole()) return in_turn(Sum{}, add_held);
+    if (!plane_.whole()) return rank_ordered_reduction(Sum{}, add_held);
     turn_all();
     Sum sum{};
     add_held(sum);

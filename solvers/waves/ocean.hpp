@@ -41,7 +41,7 @@ private:
     Wave wave(int m, int n) const;
     real variance_of(int m, int n) const;  // of the wave with these signed indices
     void set_amplitudes();
-    void turn(int begin, int end) const;  // advances columns of waves to the present time
+    void advance_phases(int begin, int end) const;  // advances columns of waves to the present time
     void turn_all() const;
     real coth(std::size_t at) const { return along_.empty() ? 1 : along_[at]; }
     template <class F>

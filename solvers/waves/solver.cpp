@@ -47,7 +47,7 @@ Waves::Waves(const scene::Scene& scene)
     }
     compute();
     passes_.reset();
-    brought_ = !held_.alone();
+    ghosts_filled_ = !held_.distributed();
     held_.made();
 }
 
@@ -58,7 +58,7 @@ StepReport Waves::step(real dt) {
 
 void Waves::set_time(real t) {
     const OwnPlanes mine = held_.own();
-    brought_ = held_.cut().empty();
+    ghosts_filled_ = held_.cut().empty();
     time_ = t;
     compute();
 }
@@ -91,18 +91,18 @@ std::vector<Values*> Waves::shared() {
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void Waves::bring() const {
-    if (brought_) return;
+void Waves::fill_ghosts() const {
+    if (ghosts_filled_) return;
     const OwnPlanes mine = held_.own();
     auto& own = const_cast<Waves&>(*this);  // only planes of other ranks are written: the state does not change
-    if (held_.alone()) {
+    if (held_.distributed()) {
         std::vector<Planes> all;
         for (Values* values : own.shared()) all.push_back(planes_of(*values));
         slabs().refresh(held_.cut(), all, 1, false);
     } else {
         for (Values* values : own.shared()) gather(*values);
     }
-    brought_ = true;
+    ghosts_filled_ = true;
 }
 
 void Waves::place_surface() {
@@ -151,9 +151,9 @@ void Waves::make_foam() {
 }
 
 FieldSet Waves::fields() const {
-    bring();
+    fill_ghosts();
     FieldSet set;
-    if (held_.alone()) set.cut = &held_.cut();
+    if (held_.distributed()) set.cut = &held_.cut();
     GridView& grid = set.grid;
     grid.dim = box_.dim;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -24,7 +24,7 @@ public:
     bool checks_itself() const override { return true; }
     std::string concern() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.alone(); }
+    bool holds_own_planes() const override { return held_.distributed(); }
     /// "position" is that of the particle with the given rest position.
     bool answer(std::string_view field, const Vec<3>& at, std::span<real> values) const override;
     std::vector<Integral> integrals() const override;
@@ -41,7 +41,7 @@ public:
 private:
     void set_time(real t);
     void compute();
-    void bring() const;
+    void fill_ghosts() const;
     std::vector<Values*> shared();
     void place_surface();
     void fill_water();
@@ -61,9 +61,9 @@ private:
     Sheet sheet_;
     std::array<Values, 3> position_;  // of the surface's points [m]
     Values foam_;
-    Values level_set_;             // of the water, where the grid shows it
-    std::array<Values, 3> water_;  // its velocity
-    mutable bool brought_ = true;  // whether ghost planes, or all planes, are up to date
+    Values level_set_;                   // of the water, where the grid shows it
+    std::array<Values, 3> water_;        // its velocity
+    mutable bool ghosts_filled_ = true;  // whether ghost planes, or all planes, are up to date
     Passes passes_;
 };
 

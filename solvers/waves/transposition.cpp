@@ -76,20 +76,21 @@ void Transposition<T>::each_part(const Block& block, const F& f) {
 template <class T>
 void Transposition<T>::transpose() {
     make_room();
-    std::vector<Parcel> parcels;
+    std::vector<Message> messages;
     for (const Block& block : blocks()) {
         each_part(block, [](const T* part, T* place, std::size_t length) { std::copy_n(part, length, place); });
-        parcels.push_back({block.peer, block.of_columns, block.columns_bytes, block.of_rows, block.rows_bytes});
+        messages.push_back({block.peer, block.of_columns, block.columns_bytes, block.of_rows, block.rows_bytes});
     }
-    slabs().trade(parcels);
+    slabs().exchange(messages);
 }
 
 template <class T>
 void Transposition<T>::transpose_back() {
     const std::vector<Block> list = blocks();
-    std::vector<Parcel> parcels;
-    for (const Block& block : list) parcels.push_back({block.peer, block.of_rows, block.rows_bytes, block.of_columns, block.columns_bytes});
-    slabs().trade(parcels);
+    std::vector<Message> messages;
+    for (const Block& block : list)
+        messages.push_back({block.peer, block.of_rows, block.rows_bytes, block.of_columns, block.columns_bytes});
+    slabs().exchange(messages);
     for (const Block& block : list) each_part(block, [](T* part, const T* place, std::size_t length) { std::copy_n(place, length, part); });
 }
 

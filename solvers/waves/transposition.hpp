@@ -29,7 +29,7 @@ inline std::size_t padded(int n) { return (static_cast<std::size_t>(n) + 3) / 4 
 /// The partition of columns.
 inline Cut cut_of_columns(int columns, int ranks) { return cut_of(columns, ranks); }
 /// Returns whether columns have distributed storage: where rows have.
-inline bool parts_columns(int rows) { return over_ranks() && detail::own_share.kept > 0 && rows > 1; }
+inline bool parts_columns(int rows) { return is_distributed() && detail::own_share.kept > 0 && rows > 1; }
 /// The columns that this rank stores.
 PlaneRange held_columns(int columns, int rows);
 
@@ -82,7 +82,7 @@ private:
         T *of_columns, *of_rows;  // positions in turned_ and in others_
         std::size_t columns_bytes, rows_bytes;
     };
-    bool transposes() const { return over_ranks() && row_count_ > 1; }
+    bool transposes() const { return is_distributed() && row_count_ > 1; }
     PlaneRange columns_of(int rank) const { return {by_column_.begin(rank), by_column_.end(rank, column_count_)}; }
     PlaneRange rows_of(int rank) const {
         const Cut& by_row = *detail::own_share.cut;

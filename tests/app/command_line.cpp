@@ -57,7 +57,7 @@ TEST("a bad --set is refused with the key that was meant, and nothing is written
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
-TEST("--backend runs particles on the reference; what it has not got, and an unknown name, are refused with what is allowed") {
+TEST("--backend runs particles on the reference; what it lacks, and an unknown name, are refused with what is allowed") {
     const std::string dam = std::string(WEIR_SOURCE_DIR) + "/tests/app/scenes/dam.toml";
     TemporaryFolder folder;
     const auto run = [&](std::vector<std::string> more) {
@@ -102,7 +102,7 @@ TEST("--explain tells what was called for, what was built and what was left out,
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
-TEST("bodies in a fluid whose density nobody named are remarked by a run and by --explain, and no others") {
+TEST("bodies in a fluid without a density in the scene are remarked by a run and by --explain, and no others") {
     TemporaryFolder folder;
     const std::string water = std::string(WEIR_SOURCE_DIR) + "/cases/floating_bodies/scene.toml";
     const auto said = [&](const std::string& density, const char* how) {
@@ -147,11 +147,11 @@ TEST("run.json times each effect by its name") {
 }
 
 TEST("weir cost --plan tells what a scene will cost and writes nothing; weir plan chooses, or says that nothing reaches it") {
-    const auto forecast = weir_says({"cost", "--plan", smoke});
-    EXPECT_EQ(forecast.code, 0) << forecast.text;
+    const auto estimate = weir_says({"cost", "--plan", smoke});
+    EXPECT_EQ(estimate.code, 0) << estimate.text;
     for (const char* what :
          {"temperature [K]", "bytes per cell", "frames", " steps", "effect buoyancy", "all", "ns per cell", "rates measured now"})
-        EXPECT_NE(forecast.text.find(what), std::string::npos) << what << "\n" << forecast.text;
+        EXPECT_NE(estimate.text.find(what), std::string::npos) << what << "\n" << estimate.text;
     const std::string tables = std::string(WEIR_SOURCE_DIR) + "/results/cost", study = std::string(WEIR_SOURCE_DIR) + "/cases/taylor_green";
     const auto chosen = weir_says({"plan", study, "--tables", tables, "--as-measured", "--error", "20%", "--budget", "10s"});
     EXPECT_EQ(chosen.code, 0) << chosen.text;

@@ -191,7 +191,7 @@ struct Play {
 };
 
 TEST(
-    "a session of a pushing, pouring and draining hand, of gravity turned and of pauses repeats bit for bit, for every solver with a "
+    "a session of a pushing, pouring and draining brush, of gravity turned and of pauses repeats bit for bit, for every solver with a "
     "hand") {
     for (const std::string& scene : {"solver = \"pbf\"\n" + pool, "solver = \"sph\"\n" + pool, "solver = \"mac_water\"\n" + pool, smoke}) {
         Play play(scene);
@@ -226,7 +226,7 @@ TEST("heights of water and tall cells are pushed, poured and drained, and their 
         const real z = play.session.scene().dim() == 3 ? 0.5 : 0;
         play.run_for(0.05);
         play.drag({{0.6, 0.3, z}}, {{0.9, 0.3, z}});
-        EXPECT_EQ(play.window.shown().hand_can[1], name != "columns");
+        EXPECT_EQ(play.window.shown().brush_can[1], name != "columns");
         play.key("3");
         play.drag({{0.5, 0.7, z}}, {{0.6, 0.7, z}});
         keep_picture(play.window, name);
@@ -234,7 +234,7 @@ TEST("heights of water and tall cells are pushed, poured and drained, and their 
         play.drag({{0.8, 0.3, z}}, {{0.9, 0.3, z}});
         play.key("5");
         play.drag({{0.8, 0.3, z}}, {{0.9, 0.3, z}});
-        EXPECT_FALSE(play.window.shown().hand_can[5]);
+        EXPECT_FALSE(play.window.shown().brush_can[5]);
         play.run_for(0.05);
         const auto file = play.finish();
         const auto& simulation = play.session.simulation();
@@ -244,7 +244,7 @@ TEST("heights of water and tall cells are pushed, poured and drained, and their 
     }
 }
 
-TEST("a hand warms and cools where there is heat, and takes hold of a body; sessions of both repeat bit for bit") {
+TEST("a brush warms and cools where there is heat, and takes hold of a body; sessions of both repeat bit for bit") {
     for (const std::string solver : {"mac_water", "pbf", "sph"}) {
         Play play("solver = \"" + solver + "\"\n" + warm + pool + bodies);
         play.run_for(0.05);
@@ -260,15 +260,15 @@ TEST("a hand warms and cools where there is heat, and takes hold of a body; sess
         const auto file = play.finish();
         const auto& simulation = play.session.simulation();
         EXPECT_GT(integral(simulation, "hand_heat"), 1e4) << solver;
-        const auto& keys = simulation.solver().hand()->keys;
-        const auto held = std::count_if(keys.begin(), keys.end(), [](const HandKey& k) { return k.kind == HandKind::grab; });
+        const auto& keys = simulation.solver().brush()->keys;
+        const auto held = std::count_if(keys.begin(), keys.end(), [](const BrushKeyframe& k) { return k.kind == BrushKind::grab; });
         EXPECT_GT(held, 0) << solver;
         play.expect_replay(file);
     }
 }
 
 TEST(
-    "by the window's own clock a hand pushes a breaking dam, waits, begins again, turns gravity and pours: events of the window system, "
+    "by the window's own clock a brush pushes a breaking dam, waits, begins again, turns gravity and pours: events of the window system, "
     "and "
     "the session repeats bit for bit") {
     std::vector<scene::Override> small;  // a test has no time for 32,768 particles
@@ -341,16 +341,16 @@ TEST("the executable runs the session that was kept, to the same bytes; a checkp
     EXPECT_GT(continued.time(), 0.1);
 }
 
-TEST("a drag moves the water its way, and the hand takes hold only where it is pressed") {
+TEST("a drag moves the water its way, and the brush takes hold only where it is pressed") {
     Play play("solver = \"pbf\"\n" + pool);
     play.mouse(vtkCommand::MouseMoveEvent, {{0.5, 0.3, 0}});
     play.run_for(0.05);
     play.drag({{0.4, 0.25, 0}}, {{1.0, 0.25, 0}});
     play.finish();
     EXPECT_GT(integral(play.session.simulation(), "hand_impulse_x"), 1);
-    ASSERT_FALSE(play.session.simulation().solver().hand()->keys.empty());
-    EXPECT_GT(play.session.simulation().solver().hand()->keys.front().time, 0.04);
-    EXPECT_EQ(play.session.simulation().solver().hand()->keys.back().kind, HandKind::off);
+    ASSERT_FALSE(play.session.simulation().solver().brush()->keys.empty());
+    EXPECT_GT(play.session.simulation().solver().brush()->keys.front().time, 0.04);
+    EXPECT_EQ(play.session.simulation().solver().brush()->keys.back().kind, BrushKind::off);
 }
 
 TEST("a touch that is shorter than a step acts for one") {
@@ -365,10 +365,10 @@ TEST("a touch that is shorter than a step acts for one") {
     play.key("period");
     play.until([](const auto& s) { return s.steps == 2; });
     play.window.stop();
-    const auto& keys = play.session.simulation().solver().hand()->keys;
+    const auto& keys = play.session.simulation().solver().brush()->keys;
     ASSERT_EQ(keys.size(), 2u);
-    EXPECT_EQ(keys[0].kind, HandKind::pour);
-    EXPECT_EQ(keys[1].kind, HandKind::off);
+    EXPECT_EQ(keys[0].kind, BrushKind::pour);
+    EXPECT_EQ(keys[1].kind, BrushKind::off);
     EXPECT_GT(integral(play.session.simulation(), "hand_mass"), 0);
 }
 
@@ -404,7 +404,7 @@ TEST("keys: space pauses, a full stop makes one step, r begins again, the wheel 
     play.key("r");
     play.until([](const auto& s) { return s.steps == 0; });
     play.key("2");
-    EXPECT_EQ(play.window.tool(), HandKind::pull);
+    EXPECT_EQ(play.window.tool(), BrushKind::pull);
     play.key("x");
 }
 
@@ -419,7 +419,7 @@ TEST("the right button moves the camera and never the fluid") {
     EXPECT_NEAR(now[0] - at[0], 40, 1);
     EXPECT_NEAR(now[1] - at[1], 20, 1);
     play.finish();
-    EXPECT_TRUE(play.session.simulation().solver().hand()->keys.empty());
+    EXPECT_TRUE(play.session.simulation().solver().brush()->keys.empty());
 }
 
 TEST("a number is turned within what the schema allows, and no further") {
@@ -435,7 +435,7 @@ TEST("a number is turned within what the schema allows, and no further") {
     EXPECT_GT(knobs.chosen().value(), 0);
 }
 
-TEST("in 3D the hand acts in the plane of the camera's focus, and the session repeats") {
+TEST("in 3D the brush acts in the plane of the camera's focus, and the session repeats") {
     Play play(
         "solver = \"pbf\"\ndim = 3\ngrid = { cells = [12, 8, 8], size = [1.5, 1, 1] }\ntime = { end = 1.0, max_dt = 0.01 }\n"
         "effects.gravity.g = [0, -9.81, 0]\nfluid.density = 1000\n"
@@ -473,10 +473,10 @@ TEST("what is seen in the window is what was drawn") {
     EXPECT_GT(blue, width * height / 20);  // and that is not a sheet of paper: water is over a tenth of the window
 }
 
-TEST("solvers without a hand have sessions too") {
+TEST("solvers without a brush have sessions too") {
     TemporaryFolder folder;
     live::Session session(live::endless(fs::path(WEIR_SOURCE_DIR) / "cases" / "stokes_wave", {}), folder.path() / "kept");
-    EXPECT_FALSE(session.has_hand());
+    EXPECT_FALSE(session.has_brush());
     for (int s = 0; s < 5; ++s) session.step();
     Simulation replay(session.finish());
     while (!replay.finished()) replay.step();

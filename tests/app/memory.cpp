@@ -1,7 +1,7 @@
 // What a run takes of memory and disk, as the executable takes it, against what is told and asked before.
 #include "app/process.hpp"
 #include "core/parallel.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
@@ -19,9 +19,9 @@ const std::string plume =
 
 }  // namespace
 
-// A run of the smallest grid shows what program and libraries take themselves. The rest is the solver's, foretold within a tenth, and
+// A run of the smallest grid shows what program and libraries take themselves. The rest is the solver's, estimated within a tenth, and
 // copies of state and frame, the same: 15 per cent is a tenth and what an allocator keeps of freed blocks that do not fit the next ones.
-TEST("a run with frames takes as much memory as is foretold of it") {
+TEST("a run with frames takes as much memory as is estimated") {
     const test::TemporaryFolder folder;
     std::ofstream(folder.path() / "plume.toml") << plume;
     const auto taken = [&](const std::string& cells) {
@@ -33,8 +33,8 @@ TEST("a run with frames takes as much memory as is foretold of it") {
     };
     const double bytes = taken("[100, 100, 100]") - taken("[8, 8, 8]");
     const auto scene = scene::read(folder.path() / "plume.toml", sim::schemas());
-    const double told = sim::bytes_of_run(scene, sim::foretell(scene, sim::registry()), true);
-    std::printf("%.1f MB taken, %.1f MB foretold\n", bytes / 1e6, told / 1e6);
+    const double told = sim::bytes_of_run(scene, sim::estimate_memory(scene, sim::registry()), true);
+    std::printf("%.1f MB taken, %.1f MB estimated\n", bytes / 1e6, told / 1e6);
     EXPECT_NEAR(told / bytes, 1, 0.15);
 }
 

@@ -78,7 +78,7 @@ probes_deep=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name=
 probes_tall=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},
     {name="z",kind="front",axis="z"},{name="floor",kind="wall_pressure",at=[0.1,0.0,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.15,0.18]},
     {name="sums",kind="integral",field="volume"},{name="high",kind="point",field="cell_height",at=[0.2,0.1,0.16]}]')
-# some four cells a step, where a rank has four planes beyond its cuts as it begins
+# some four cells a step, where a rank has four ghost planes as it begins
 fast='--set initial.velocity={name="random",speed=4.0} --set time.dt=0.01 --set time.guard="off"'
 even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
 # from rest, and without a jet into air: there friction takes hundreds of iterations
@@ -123,7 +123,7 @@ continued_by_others() {
     alike "$1" "$2-2"
     alike "$1" "$2-4"
 }
-# poisoned RANKS THREADS SCENE [--set ...]: what no one has brought is not a number, and nothing changes
+# poisoned RANKS THREADS SCENE [--set ...]: stale ghosts are not numbers, and nothing changes
 poisoned() {
     local ranks=$1 threads=$2
     shift 2
@@ -135,8 +135,8 @@ poisoned() {
 # what the solver of one process holds, and what the system has seen of a rank beyond what it sees of one with a few cells
 holds() { grep -o '"solver_bytes": [0-9]*' "$1/run.json" | cut -d' ' -f2; }
 peak_beyond() { echo $(($(told "$2" peak_bytes "$3") - $(told "$1" peak_bytes "$3"))); } # TINY FOLDER RANK
-# shared SCENE PLANE_CELLS WHOLE RANKS FOLDER PARTS [--set ...]: of 256 planes each of so many ranks holds its part of what one process has in
-# the folder: numbers 4 planes beyond either cut, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
+# shared SCENE PLANE_CELLS WHOLE RANKS FOLDER PARTS [--set ...]: of 256 planes each rank holds its part of what one process has in
+# the folder: numbers 4 ghost planes on both sides, and one; bytes 11 (what is inside, layers, solids, known faces: less than 8 of them, 14 planes
 # more than that); and so much that is whole
 shared() {
     local scene=$1 plane=$2 whole=$3 ranks=$4 folder=$5 parts=$6 one rank
@@ -237,7 +237,7 @@ water_schemes)
     compare flat_ring "3 1" "$water_deep" $water_ring $viscous --set grid.cells=[28,30,32]
     in_two_parts 0.03 0.06 "$water_deep"
     ;;
-water_cut) # planes are cut by what they hold: as the scene begins, as a restart finds it, and anew at checkpoints
+water_cut) # planes are cut by what they hold: as the scene begins, as a restart finds it, and rebalanced at checkpoints
     told_cut() { grep -o '"cut":\[[0-9,]*\]' "$1/run.json" | cut -d: -f2; }
     is_cut() { [ "$(told_cut "$1")" = "$2" ] || fail "$1 is cut $(told_cut "$1"), not $2"; }
     compare begun "$every" "$one_end"
@@ -249,16 +249,16 @@ water_cut) # planes are cut by what they hold: as the scene begins, as a restart
     [ "$(told_cut parts)" != '[0,16,80]' ] || fail "a restart is cut as the scene began"
     ends 2 over 2 "$weir" run --restart parts --quiet --set time.end=0.08 --set grid.cells=[24,20,72]
     says "does not match the scene"
-    # anew at checkpoints; the last one changes nothing any more. How much the velocity has changed is watched across that.
+    # rebalanced at checkpoints; the last one changes nothing any more. How much the velocity has changed is watched across that.
     one_end="$one_end --set time.stop_when_steady=300"
-    ends 0 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out anew
+    ends 0 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out rebalanced
     for ranks in 2 4; do
-        ends 0 over $ranks "$weir" run $one_end --checkpoint-every 3 --quiet --threads $((ranks == 2 ? 2 : 1)) --out anew-$ranks
-        alike anew anew-$ranks
+        ends 0 over $ranks "$weir" run $one_end --checkpoint-every 3 --quiet --threads $((ranks == 2 ? 2 : 1)) --out rebalanced-$ranks
+        alike rebalanced rebalanced-$ranks
     done
-    [ "$(told_cut anew-2)" != '[0,16,80]' ] || fail "nothing was cut anew at a checkpoint"
-    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out anew-3
-    alike anew anew-3
+    [ "$(told_cut rebalanced-2)" != '[0,16,80]' ] || fail "nothing was repartitioned at a checkpoint"
+    ends 0 over 3 WEIR_HALO_POISON=1 "$weir" run $one_end --checkpoint-every 3 --quiet --threads 1 --out rebalanced-3
+    alike rebalanced rebalanced-3
     ;;
 heightfield)
     compare shallow "$every" "$shallow"
@@ -285,7 +285,7 @@ heightfield)
         in_two_parts 0.2 0.4 "$scene"
     done
     ;;
-heightfield_2d) # one row of columns: everybody moves it, objects on it too
+heightfield_2d) # one row of columns: replicated work, objects on it too
     for model in shallow_water columns; do
         compare $model "$every" "$line" --set scheme.model=$model
         grep -q '"cut":\[\]' $model-3/run.json || fail "run.json tells of a cut"
@@ -478,17 +478,17 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
         alike one parts-$ranks
         holds_own parts-$ranks
         for rank in $(seq 0 $((ranks - 1))); do
-            # Nothing crosses a cell in a step: 4 planes beyond either cut, and one. Whole are the pressure's levels of fewer than 20,000 cells,
+            # Nothing crosses a cell in a step: 4 ghost planes on both sides, and one. Whole are the pressure's levels of fewer than 20,000 cells,
             # of 8/7 as many in all: 4 vectors, 1/diagonal, 6 weights of half the cells, faces, what leads to p = 0, flags: less than 64
-            # bytes a cell in rows twice as long as they are full.
+            # bytes per cell in rows twice as long as they are full.
             at_most "$(told parts-$ranks solver_bytes $rank)" $((one * (256 / ranks + 9) / 256 + 20000 * 8 / 7 * 128)) "rank $rank of $ranks"
         done
         # The last good state and a checkpoint beside it: 3 + 1 + 2 numbers and a flag a cell, each; and of a frame the own part of its largest
-        # array, three numbers a cell. A whole frame has 48 bytes a cell.
+        # array, three numbers a cell. A whole frame has 48 bytes per cell.
         peaks plume.toml $cells $((2 * 49 + 24)) $ranks parts-$ranks [8,8,32]
     done
     # Particles: a column of 512 layers of 64. Cells are two spacings wide; the first of an axis holds 3. A rank knows at most 3 layers, a row
-    # and a cell beyond either cut.
+    # and a cell of ghosts on both sides.
     cat >column.toml <<-END
 	solver = "sph"
 	dim = 3
@@ -517,7 +517,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
         done
         continued_by_others $solver $solver 0 0 0.008
     done
-    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more
+    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes per face more
     continued_by_others one parts $((8 * cells)) $((8 * cells)) 0.004
     ;;
 storage_water) # the same of liquid with markers, as much of it in every plane
@@ -539,7 +539,7 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     for ranks in 2 4; do
         shared $pool $ranks one parts-$ranks
         # The last good state and a checkpoint beside it: 3 + 1 + 1 numbers, a flag and a layer of a cell, 6 numbers of 8 markers in each of the
-        # lower half, each; and of a frame the own part of its largest array, three numbers a marker. A whole frame has 40 bytes a cell and 48
+        # lower half, each; and of a frame the own part of its largest array, three numbers a marker. A whole frame has 40 bytes per cell and 48
         # a marker.
         peaks pool.toml $cells $((2 * (42 + 4 * 6 * 8) + 4 * 3 * 8)) $ranks parts-$ranks [8,8,64]
     done
@@ -550,8 +550,8 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     # in cells that are no cubes, half as many along x
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out flat --set grid.cells=[16,32,256]
     for ranks in 2 4; do shared $pool $ranks flat flat-$ranks --set grid.cells=[16,32,256]; done
-    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more; and before anything is made, each looks
-    # at its share of the level set, 8 bytes a cell, to find where planes are cut
+    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes per face more; and before anything is made, each looks
+    # at its share of the level set, 8 bytes per cell, to find where planes are cut
     continued_by_others one parts $((8 * cells + 8 * cells * 256 / 4)) $((8 * cells + 8 * cells * 256 / 2)) 0.004
     ;;
 storage_tall) # the same of tall cells: planes of the lattice, and lines of the pressure's matrix and of its levels
@@ -567,21 +567,21 @@ storage_tall) # the same of tall cells: planes of the lattice, and lines of the 
 	output = { every = 1.0 }
 	END
     cells=$((32 * 48)) # of a plane
-    # Lines 2 beyond the cuts. Whole are the pressure's levels of fewer than 20,000 unknowns, of 4/3 as many in all: 9 numbers, 11 of single
+    # Lines have 2 ghosts on both sides. Whole are the pressure's levels of fewer than 20,000 unknowns, of 4/3 as many in all: 9 numbers, 11 of single
     # precision and a flag, less than 128 bytes, in rows half as long again; and of a row of cells where the band begins and ends in it.
     deep="deep.toml $cells $((20000 * 4 / 3 * 128 * 3 / 2 + 8 * 48 * 256))"
     ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     for ranks in 2 4; do
         shared $deep $ranks one parts-$ranks
         # The last good state and a checkpoint beside it: 3 + 1 + 1 numbers, a flag and a layer of a cell, each; and of a frame the own part of
-        # its largest array, three numbers a cell. A whole frame has 48 bytes a cell.
+        # its largest array, three numbers a cell. A whole frame has 48 bytes per cell.
         peaks deep.toml $cells $((2 * 42 + 24)) $ranks parts-$ranks [8,12,64]
     done
     # where the pressure is most of it: no tall cell anywhere
     regular='--set scheme.columns=uniform --set solids=[]'
     ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out regular $regular
     for ranks in 2 4; do shared $deep $ranks regular regular-$ranks $regular; done
-    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes a face more
+    # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes per face more
     continued_by_others one parts $((8 * cells)) $((8 * cells)) 0.004
     ;;
 storage_heightfield) # the same of rows of columns, with rain over a part of them, and of varied depth where they pull their neighbours
@@ -607,7 +607,7 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
             holds_own $model-$ranks
             ends 0 over $ranks "$weir" run lake.toml --quiet --threads 1 --set scheme.model=$model --out tiny-$ranks --set grid.cells=[8,1,64]
             for rank in $(seq 0 $((ranks - 1))); do
-                # Two rows beyond either cut, and one. Whole are what a stage says of each row, 4 numbers, and its scratch of less than 40 rows.
+                # Two ghost rows on both sides, and one. Whole are what a stage says of each row, 4 numbers, and its scratch of less than 40 rows.
                 held=$(told $model-$ranks solver_bytes $rank) rows=$((1024 / ranks))
                 at_most "$held" $((one * (rows + 5) / 1024 + 4 * 8 * 1024 + 40 * 8 * (512 + 24))) "$model, rank $rank of $ranks"
                 # As the system sees it, at any time of the run, beyond what a run of a few columns takes: that, the last good state and a
@@ -643,7 +643,7 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
             holds_own $name-$ranks
             ends 0 over $ranks "$weir" run sea.toml --quiet --threads 1 --out tiny-$ranks --set grid.cells=[64,1,64]
             for rank in $(seq 0 $((ranks - 1))); do
-                # One row beyond either cut, and one. Half the waves with 5 complex and 2 real numbers each; of their columns, one more than of the
+                # One ghost row on both sides, and one. Half the waves with 5 complex and 2 real numbers each; of their columns, one more than of the
                 # rows, the last rank has one more than its share. What a transposition brings and takes: half the waves of this rank; of a
                 # basin all, in real numbers.
                 held=$(told $name-$ranks solver_bytes $rank) rows=$((512 / ranks))
@@ -707,13 +707,13 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
     holds_own pool-2 pool-4
     for ranks in 2 4; do
         for rank in $(seq 0 $((ranks - 1))); do
-            # Samples, of which two planes beyond either cut and one; and less than 120 points and 240 triangles a plane: 150 and 60 bytes each.
-            # The level set, the velocity and the markers of all would be 32 bytes a cell and 192 a cell of liquid. Pages as above.
+            # Samples, of which two ghost planes on both sides and one; and less than 120 points and 240 triangles a plane: 150 and 60 bytes each.
+            # The level set, the velocity and the markers of all would be 32 bytes per cell and 192 a cell of liquid. Pages as above.
             at_most "$(extra $ranks $rank pool)" $(((4 * 34 * 34 + 120 * 150 + 240 * 60) * (256 / ranks + 5) + 2 * huge_page + (rank == 0 ? handed : 0))) "surface of a level set, rank $rank of $ranks"
         done
     done
     ;;
-halo) # NaN in every plane that no one has brought, whenever something is brought
+halo) # NaN in every stale ghost plane, at each halo exchange
     poisoned 3 1 "$flat"
     poisoned 2 1 "$deep"
     poisoned 3 1 "$water"
@@ -827,12 +827,12 @@ ends)
     refused "unknown key" "$flat" --set grid.cell=2
     ends 2 over 2 "$weir" list solvers
     says "only weir run works in parallel (MPI)"
-    # a failure is everybody's
+    # a failure is one of all ranks
     ends 3 over 3 "$weir" run "$flat" --quiet --out failed --set scheme.poisson.method=cg --set scheme.poisson.max_iterations=1
     says "last good state"
     [ "$(grep -c "step 1" log)" -eq 1 ] || fail "said more than once"
     [ -e failed/last_good.weir ] || fail "no last good state"
-    # what the first cannot write nobody goes on without
+    # what the first cannot write ends all ranks
     mkdir blocked && touch blocked/probes
     ends 2 over 3 "$weir" run "$flat" --quiet --out blocked
     says probes

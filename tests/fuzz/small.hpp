@@ -1,7 +1,7 @@
 // Scenes that are small enough to be run thousands of times.
 #pragma once
 #include "core/error.hpp"
-#include "sim/foretold.hpp"
+#include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
 #include "sim/simulation.hpp"
 

@@ -1,5 +1,5 @@
-// Nothing that a scene may say is ignored. A scene is refused where it gives a key that nobody reads; and here small scenes give, solver by
-// solver, every key that the schema allows: a key that no solver reads makes the test fail.
+// Nothing that a scene may say is ignored. A scene is refused where it gives a key that no reader reads; and here small scenes give, solver
+// by solver, every key that the schema allows: a key that no solver reads makes the test fail.
 #include "scene/given.hpp"
 #include "sim/registry.hpp"
 #include "sim/simulation.hpp"

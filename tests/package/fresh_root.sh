@@ -44,7 +44,7 @@ if command -v lintian >/dev/null; then
     lintian --fail-on error --allow-root --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog "$root"/packages/weir_*.deb >"$work/lintian.log" ||
         { grep '^E:' "$work/lintian.log"; exit 1; }
 else
-    echo "lintian is not installed: nobody has looked at the packages"
+    echo "lintian is not installed: the packages were not checked"
 fi
 
 inside() { chroot "$root" /usr/bin/env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/home/user OMP_NUM_THREADS=1 DEBIAN_FRONTEND=noninteractive bash -ec "cd /home/user; $1"; }

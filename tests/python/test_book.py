@@ -90,7 +90,7 @@ def expect(text, printed, where):
     lines = iter(printed.splitlines())
     for wanted in text.splitlines():
         pattern = "*".join(re.sub(r"([\[\]*?])", r"[\1]", part) for part in re.split(r" ?\.\.\. ?", wanted))
-        assert any(fnmatch.fnmatchcase(line, pattern) for line in lines), f"{where}: nobody prints\n{wanted}\nbut\n{printed}"
+        assert any(fnmatch.fnmatchcase(line, pattern) for line in lines), f"{where}: no output has\n{wanted}\nbut\n{printed}"
 
 
 @pytest.mark.parametrize("page", pages, ids=name_of)

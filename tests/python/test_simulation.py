@@ -349,7 +349,7 @@ def seconds(f):
     return time.process_time() - start
 
 
-# --- a hand in the run
+# --- interactive forcing
 drop = changed(grid={"cells": [32, 32], "size": [1.0, 1.0]}, liquid=[{"shape": "sphere", "centre": [0.5, 0.5], "radius": 0.2}], effects={}, probes=[])
 
 

@@ -101,8 +101,7 @@ TEST_IN_2D_AND_3D("a restart on the reference continues bit for bit") {
     }
 }
 
-TEST(
-    "effects that the reference has not got are refused together, by name, with those it has; an unknown backend with all that are known") {
+TEST("effects that the reference lacks are refused together, by name, with those it has; an unknown backend with all that are known") {
     const auto told = [](const char* solver, const char* backend, const std::string& more) -> std::string {
         try {
             made(dam<2>(solver, backend, "", more));

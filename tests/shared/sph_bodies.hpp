@@ -35,7 +35,8 @@ TEST_IN_2D_AND_3D("ten steps with each term of the physics end within 1e-4 of th
         }
         const auto& x = here->fluid();
         EXPECT_EQ(x.id, there->fluid().id);
-        EXPECT_LE(test::farthest_apart(x, there->fluid()), 1e-4 * test::h) << physics.effects;  // 55 times a step's rounding of 1e-6 h
+        EXPECT_LE(test::farthest_apart(x, there->fluid()), 1e-4 * test::h)
+            << physics.effects;  // 55 times the rounding of one step, of 1e-6 h
         EXPECT_EQ(test::integral(*here, "outside"), 0);
     }
 }

@@ -57,7 +57,7 @@ TEST_IN_2D_AND_3D(
             EXPECT_NEAR(here->advised_dt(), there->advised_dt(), 1e-4 * there->advised_dt()) << place;
         }
         ASSERT_EQ(here->fluid().id, there->fluid().id) << place;
-        EXPECT_LE(test::farthest_apart<D>(here->fluid(), there->fluid()), 1e-4 * test::h) << place;  // 55 times a step's rounding
+        EXPECT_LE(test::farthest_apart<D>(here->fluid(), there->fluid()), 1e-4 * test::h) << place;  // 55 times the rounding of one step
         EXPECT_EQ(test::integral(*here, "outside"), 0) << place;
     }
 }

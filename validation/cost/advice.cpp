@@ -85,9 +85,10 @@ std::string along_the_front(const Study& study, const Points& by_price) {
                        to.price(study.price) / from.price(study.price));
 }
 
-/// Where most methods are no more accurate at their dearest setting than at their cheapest, that is what to know; nothing otherwise.
+/// Where most methods are no more accurate at their most expensive configuration than at their cheapest, that is what to know; nothing
+/// otherwise.
 std::string that_finer_does_not_pay(const Study& study, const Points& by_price) {
-    std::map<std::string, std::pair<const CostPoint*, const CostPoint*>> ends;  // of each method: cheapest, dearest
+    std::map<std::string, std::pair<const CostPoint*, const CostPoint*>> ends;  // of each method: cheapest, most expensive
     for (const CostPoint* p : by_price) ends.try_emplace(p->method, p, p).first->second.second = p;
     std::size_t refined = 0, worse = 0;
     double least = infinity, most = 0;

@@ -34,7 +34,7 @@ double seconds_of_step(Solver& solver, real dt) {
 }
 
 /// Steps with and without, in turns, so that whatever else the machine does meets both.
-void take_turns(EffectCost& cost, Solver& with, Solver& without, real dt, const EffectCostOptions& options) {
+void time_interleaved(EffectCost& cost, Solver& with, Solver& without, real dt, const EffectCostOptions& options) {
     std::vector<double> ratio, a, b;
     double spent = 0;
     for (int i = -untimed_pairs; i < options.pairs && (i < fewest_pairs || spent < options.enough_seconds); ++i) {
@@ -53,7 +53,7 @@ EffectCost measure_effect(const scene::SolverKind& kind, int dim, int cells, con
     try {
         const auto without = kind.make(plain_scene(kind, dim, cells, {effect}));
         const auto with = kind.make(scene_with(kind, dim, cells, {effect}, usual_strength));
-        take_turns(cost, *with, *without, 0.2 * std::min({with->advised_dt(), without->advised_dt(), 1.0}), options);
+        time_interleaved(cost, *with, *without, 0.2 * std::min({with->advised_dt(), without->advised_dt(), 1.0}), options);
         cost.bytes_without = without->bytes(), cost.bytes_with = with->bytes();
         for (const EffectPlan& plan : with->effects()) {
             cost.inside = plan.inside;

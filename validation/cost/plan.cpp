@@ -73,7 +73,7 @@ PricedHere priced_here(const PlanOptions& options, const Study& study, std::vect
     return {scaled(std::move(curves), c), words};
 }
 
-std::string asked_text(const Study& study, const Budget& budget) {
+std::string budget_text(const Study& study, const Budget& budget) {
     const std::string of = study.price == Price::step ? "step" : fmt::format("frame of {:.3g} ms", 1e3 * budget.frame);
     const std::string error =
         budget.error < infinity ? fmt::format("{} at most {:g}", study.error, budget.error) : fmt::format("the smallest {}", study.error);
@@ -106,8 +106,8 @@ std::string run_line(const Study& study, const CostCurve& curve, const Priced& a
     return line;
 }
 
-Plan make_plan(const PlanOptions& asked, const Solvers& solvers) {
-    PlanOptions options = asked;
+Plan make_plan(const PlanOptions& requested, const Solvers& solvers) {
+    PlanOptions options = requested;
     if (options.tables.empty()) options.tables = published("cost");
     if (options.error.empty() && options.budget.empty())
         throw BadInput("weir plan requires --error, the largest error (2%), or --budget, the computing time per frame (16ms), or both");
@@ -124,7 +124,7 @@ Plan make_plan(const PlanOptions& asked, const Solvers& solvers) {
 int plan_command(const PlanOptions& options, const Solvers& solvers) {
     const Plan plan = make_plan(options, solvers);
     const Recommendation& r = plan.recommendation;
-    fmt::print("{}", asked_text(plan.study, plan.budget));
+    fmt::print("{}", budget_text(plan.study, plan.budget));
     const auto show = [&](const char* before, const Choice& c) {
         fmt::print("{}{}\n{}\n", before, priced_text(c, plan.study), run_line(plan.study, *c.curve, c.at, solvers));
     };

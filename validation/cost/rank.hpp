@@ -28,7 +28,7 @@ struct PriceAt {
 };
 /// The price at which a method reaches an error; nothing where no setting does.
 std::optional<PriceAt> price_at(const Envelope& method, real error);
-/// The error that a price buys, not less than the price of the cheapest setting; beyond the dearest one that one's.
+/// The error within a budget of at least the cheapest configuration; beyond the most expensive one, the error of that one.
 real error_at(const Envelope& method, double price);
 
 struct Rank {
@@ -42,7 +42,7 @@ struct Ranking {
     std::vector<std::string> missing{};  // methods that do not reach the error
 };
 /// Methods by the price at which they reach `error`. A method is alike to the cheapest where for the price of that one it has an error that
-/// is larger by less than the reference is known to, `known_to`. One that cannot be had for that price is dearer, whatever its error.
+/// is larger by less than the reference is known to, `known_to`. One that does not fit the budget is more expensive, whatever its error.
 Ranking rank(const std::vector<Envelope>& methods, real error, real known_to);
 
 }  // namespace weir::validation

@@ -61,7 +61,7 @@ double seconds_of(const Priced& p, Price price, const Budget& budget);
 struct Recommendation {
     std::optional<Choice> take;     // measured: the cheapest that is good enough and within the budget; without an error the most accurate
     std::vector<Choice> nearest;    // where there is none, measured: the most accurate within the budget, the cheapest that is good enough
-    std::optional<Choice> between;  // read between two entries: good enough, and cheaper than what is to be taken; nobody has run it
+    std::optional<Choice> between;  // read between two entries: good enough, and cheaper than the recommended one; not measured
 };
 Recommendation recommend(const std::vector<CostCurve>& curves, Price price, const Budget& budget);
 /// Every entry that recommend() can name for some budget and some error: those than which none is both cheaper and as accurate.

@@ -39,7 +39,7 @@ std::vector<Key> table_keys() {
             {.name = "rows", .type = Type::tables, .doc = "One entry per value.", .required = true, .keys = row}};
 }
 
-/// Milliseconds a step of the row's passes, or of everything.
+/// Milliseconds per step of the row's passes, or of everything.
 double milliseconds(const ReportRow& row, Simulation& simulation) {
     auto& passes = simulation.solver().passes();
     passes.reset();

@@ -9,7 +9,7 @@
 
 namespace weir::validation {
 
-/// One line a point, from cheap to dear; failures stay, last.
+/// One line per point, from cheap to expensive; failures come last.
 std::string cost_table(const StudyResult& result);
 /// method,setting,error,seconds_per_second,ms_per_step,real_time_factor,spread,others,repeats,steps,bytes,front,threads,device,failure and
 /// the further metrics.

@@ -30,7 +30,7 @@ struct Criterion {
     bool every = false;                     // the worst over the sweep
     real formal_order = std::nan("");       // for gci_at_most on two grids
     std::string why{};
-    std::string not_reached{};  // why the bound is asked for and not met; empty: it is claimed
+    std::string not_reached{};  // why an open target is not met; empty: the bound is a claim
     scene::Place place{};       // of its metric in case.toml
 
     bool is_order() const { return test == Test::order_at_least || test == Test::order_within; }

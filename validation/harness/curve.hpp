@@ -18,7 +18,7 @@ struct Curve {
     std::size_t size() const { return x.size(); }
 };
 
-/// y at `at` on the straight line between neighbours; NaN outside the curve (nobody extrapolates unawares). x must ascend.
+/// y at `at` on the straight line between neighbours; NaN outside the curve (no extrapolation). x must ascend.
 inline real interpolate(const Curve& c, real at) {
     if (c.x.empty() || !(at >= c.x.front()) || !(at <= c.x.back())) return std::nan("");
     std::size_t i = 1;

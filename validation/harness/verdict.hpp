@@ -37,7 +37,7 @@ struct Verdict {
     real low = -infinity, high = infinity;
     bool pass = false;
     std::string why{};
-    std::string not_reached{};  // why a bound that is asked for is not met: listed, not claimed
+    std::string not_reached{};  // why an open target is not met: listed, not claimed
     std::string note{};         // a failure's message, or a warning about the grids
     double seconds = 0;         // of the runs that it rests on
     /// "<= 1e-08", "in [0.9, 1.1]", ">= 1.8"

@@ -154,9 +154,9 @@ real outside_of(const rigid::Bodies<D>& bodies, const scene::Scene& scene) {
     const Vec<D> min = scene.vec<D>("grid.origin"), max = min + scene.vec<D>("grid.size");
     real most = 0;
     for (const auto& body : bodies.all())
-        for (const auto& feeler : body.feelers) {
-            const Vec<D> x = body.pose().to_world(feeler.at);
-            for (int a = 0; a < D; ++a) most = std::max({most, min[a] - x[a] + feeler.radius, x[a] + feeler.radius - max[a]});
+        for (const auto& sphere : body.contact_spheres) {
+            const Vec<D> x = body.pose().to_world(sphere.at);
+            for (int a = 0; a < D; ++a) most = std::max({most, min[a] - x[a] + sphere.radius, x[a] + sphere.radius - max[a]});
         }
     return most;
 }

@@ -1,4 +1,4 @@
-// Flow past solids that it sticks to: drag, shedding and recirculation behind a cylinder, where flow behind a step reattaches.
+// Flow past no-slip solids: drag, shedding and recirculation behind a cylinder, where flow behind a step reattaches.
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/needed_field.hpp"
 #include "validation/metrics/samples.hpp"

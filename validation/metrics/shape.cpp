@@ -10,7 +10,7 @@
 namespace weir::validation {
 namespace {
 
-constexpr int points_a_cell = 8;  // along each axis, as the baselines were measured
+constexpr int points_per_cell = 8;  // along each axis, as the baselines were measured
 
 /// Bilinear between cell centres; beyond the outermost the nearest value.
 real bilinear(const FieldView& f, const GridView& g, real i, real j) {
@@ -30,14 +30,14 @@ Areas areas(const RunRecord& run, const Reference& ref) {
     const GridView& g = run.fields.grid;
     const ScalarField& exact = ref.scalar("level_set");
     long inside = 0, different = 0;
-    for (int q = 0; q < points_a_cell * g.cells[1]; ++q)
-        for (int p = 0; p < points_a_cell * g.cells[0]; ++p) {
-            const real i = (p + 0.5) / points_a_cell, j = (q + 0.5) / points_a_cell;  // in cells from the lower corner
+    for (int q = 0; q < points_per_cell * g.cells[1]; ++q)
+        for (int p = 0; p < points_per_cell * g.cells[0]; ++p) {
+            const real i = (p + 0.5) / points_per_cell, j = (q + 0.5) / points_per_cell;  // in cells from the lower corner
             const Vec<3> x{g.origin[0] + g.spacing[0] * i, g.origin[1] + g.spacing[1] * j, 0};
             const bool ours = bilinear(phi, g, i - 0.5, j - 0.5) < 0, theirs = exact(x, run.time) < 0;
             inside += ours, different += ours != theirs;
         }
-    const real unit = cell_volume(g) / (points_a_cell * points_a_cell);
+    const real unit = cell_volume(g) / (points_per_cell * points_per_cell);
     return {static_cast<real>(inside) * unit, static_cast<real>(different) * unit};
 }
 

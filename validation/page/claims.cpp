@@ -19,10 +19,10 @@ constexpr double nearly = 0.9;  // of a bound: what the summary calls close to i
 struct CaseClaims {
     std::string name{};
     std::vector<const json*> claims{};
-    std::size_t held = 0, asked = 0;  // asked: bounds that are listed as not reached
+    std::size_t held = 0, open_targets = 0;  // open_targets: bounds that are not met
     double seconds = 0;
     std::optional<double> nearest{};  // the largest part of a bound that one of its claims uses
-    std::size_t count() const { return claims.size() - asked; }
+    std::size_t count() const { return claims.size() - open_targets; }
     bool all_held() const { return held == count(); }
 };
 
@@ -33,7 +33,7 @@ std::vector<CaseClaims> by_case(const json& verdicts) {
         c.name = text_at(v, "case");
         c.claims.push_back(&v);
         if (!text_at(v, "not_reached").empty()) {
-            ++c.asked;
+            ++c.open_targets;
             continue;
         }
         c.held += v.value("pass", false) ? 1 : 0;
@@ -146,7 +146,7 @@ std::string parts(const json& verdicts) {
     return "<ul>" + list + "</ul>";
 }
 
-/// What was asked and is not met, with its figure: a bound is never moved to where it passes.
+/// Open targets with their values: a bound is never moved to where it passes.
 std::string not_reached(const json& bounds) {
     if (bounds.empty()) return "";
     HtmlTable table({"case", "claim", "target", "measured", "rationale", "reason not met"}, "Open targets: bounds that are not met");
@@ -190,7 +190,7 @@ std::optional<double> used_part(const json& v) {
 
 Section claims_section(const json& all_verdicts, const std::filesystem::path& results) {
     const auto cases = by_case(all_verdicts);
-    const json verdicts = claimed(all_verdicts), open = asked(all_verdicts);
+    const json verdicts = claimed(all_verdicts), open = open_targets(all_verdicts);
     std::size_t held = 0, close = 0;
     for (const json& v : verdicts) held += v.value("pass", false) ? 1 : 0, close += used_part(v).value_or(0) > nearly ? 1 : 0;
     const bool all = held == verdicts.size();

@@ -49,7 +49,7 @@ void add_rows(HtmlTable& table, const json& study) {
     }
 }
 
-/// What was asked for beyond the floor that is guarded, with how far each comes.
+/// Open targets beyond the guaranteed range, with the last stable value of each.
 std::string not_reached(const std::vector<json>& studies) {
     HtmlTable table({"case", "parameter raised", "target", "stable up to", "guaranteed", "reason not met"},
                     "Open targets: limits that are not met");
@@ -77,7 +77,7 @@ std::string reasons(const std::vector<json>& studies) {
     return "<details><summary>Difficulty of each axis</summary><ul class=\"reasons\">" + list + "</ul></details>\n";
 }
 
-/// Limits that theory has a word on, one line an axis: what was found, over all methods, beside what was foretold.
+/// Limits that theory has a word on, one line an axis: what was found, over all methods, beside the estimate.
 std::string beside_theory(const std::vector<json>& studies) {
     struct Found {
         double least, most, theory;
@@ -109,17 +109,18 @@ void Counts::add(const json& limit) {
         ++guards;
     else
         ++limits, unbroken += broke ? 0 : 1;
-    asked += limit.contains("asked") ? 1 : 0;
+    open_targets += limit.contains("asked") ? 1 : 0;
     below += limit.value("guarded", true) ? 0 : 1;
     doubted += text_at(limit, "doubt").empty() ? 0 : 1;
 }
 
 std::string Counts::verdict() const {
-    const std::string floors = below ? fmt::format("{} below the guaranteed range.", below) : std::string("Every guaranteed range passes.");
-    return floors +
-           (asked ? fmt::format(" {} open {} beyond the guaranteed range {} not met.", asked, asked == 1 ? "target" : "targets",
-                                asked == 1 ? "is" : "are")
-                  : "") +
+    const std::string guaranteed =
+        below ? fmt::format("{} below the guaranteed range.", below) : std::string("Every guaranteed range passes.");
+    return guaranteed +
+           (open_targets ? fmt::format(" {} open {} beyond the guaranteed range {} not met.", open_targets,
+                                       open_targets == 1 ? "target" : "targets", open_targets == 1 ? "is" : "are")
+                         : "") +
            (doubted ? fmt::format(" {} contradict their description.", doubted) : "");
 }
 

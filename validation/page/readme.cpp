@@ -28,17 +28,17 @@ std::string side_by_side(const std::filesystem::path& results, const std::string
                            text_at(study, "machine"), study.value("threads", 1), text_at(study, "size"), prefix, prefix);
 }
 
-struct Asked {
+struct Question {
     const char* title;
     std::set<std::string> kinds;
 };
 
 std::string claims_table(const json& verdicts, const std::string& prefix) {
-    const Asked parts[] = {{"Are the equations solved correctly?", {"exact", "convergence"}},
-                           {"Are they the right equations?", {"benchmark"}},
-                           {"How much solver work does accuracy cost?", {"iterations"}}};
+    const Question parts[] = {{"Are the equations solved correctly?", {"exact", "convergence"}},
+                              {"Are they the right equations?", {"benchmark"}},
+                              {"How much solver work does accuracy cost?", {"iterations"}}};
     std::string s = "### Claims\n| question | claims that pass | cases |\n|---|---|---|\n";
-    for (const Asked& part : parts) {
+    for (const Question& part : parts) {
         std::size_t held = 0, all = 0;
         std::set<std::string> cases;
         for (const json& v : verdicts) {
@@ -71,7 +71,7 @@ std::string limits_line(const std::filesystem::path& results, const std::string&
 std::string readme_part(const std::filesystem::path& results, const std::string& prefix) {
     const json verdicts = json_of(results / "verdicts.json");
     if (!verdicts.is_array()) throw BadInput(results.string() + " has no readable verdicts.json");
-    const std::size_t open = asked(verdicts).size();
+    const std::size_t open = open_targets(verdicts).size();
     const std::string not_reached =
         open == 0 ? "" : fmt::format("\n{} open targets are not met: [the table]({}/index.md#open-targets).\n", open, prefix);
     return side_by_side(results, prefix) + claims_table(claimed(verdicts), prefix) + not_reached + limits_line(results, prefix) +

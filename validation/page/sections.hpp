@@ -30,9 +30,9 @@ Section pictures_section(const std::filesystem::path& results);
 
 /// How many axes there are of each kind, and how they came out.
 struct Counts {
-    std::size_t limits = 0, unbroken = 0, units = 0, guards = 0, asked = 0, below = 0, doubted = 0;
+    std::size_t limits = 0, unbroken = 0, units = 0, guards = 0, open_targets = 0, below = 0, doubted = 0;
     void add(const nlohmann::json& limit);
-    /// "Every floor that is guarded holds."
+    /// "Every guaranteed range passes."
     std::string verdict() const;
 };
 

@@ -65,7 +65,7 @@ nlohmann::json json_of(const std::filesystem::path& file) {
     return parsed.is_discarded() ? nlohmann::json(nullptr) : parsed;
 }
 
-nlohmann::json asked(const nlohmann::json& verdicts) {
+nlohmann::json open_targets(const nlohmann::json& verdicts) {
     auto list = nlohmann::json::array();
     for (const auto& v : verdicts)
         if (!text_at(v, "not_reached").empty()) list.push_back(v);

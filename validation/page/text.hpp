@@ -21,9 +21,9 @@ std::string bytes_of(const std::filesystem::path& file);
 nlohmann::json json_of(const std::filesystem::path& file);
 
 std::string text_at(const nlohmann::json& entry, const char* key);
-/// The verdicts that are claimed, without the bounds that are asked for and not reached; and those alone.
+/// The verdicts that are claimed, without open targets; and the open targets alone.
 nlohmann::json claimed(const nlohmann::json& verdicts);
-nlohmann::json asked(const nlohmann::json& verdicts);
+nlohmann::json open_targets(const nlohmann::json& verdicts);
 /// Cases that were published without numbers of the ci size that the tests could compare.
 std::vector<std::string> unpinned_cases(const nlohmann::json& verdicts);
 std::optional<double> number_at(const nlohmann::json& entry, const char* key);

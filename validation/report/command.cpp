@@ -208,7 +208,7 @@ int validate_command(const ValidateOptions& options, const Solvers& solvers) {
         if (talk) std::fprintf(stderr, "\r\033[K");
         fmt::print("{}\n", c.cut ? cut_runs(result) : claims_table(result) + orders_table(result));
         std::fflush(stdout);
-        std::fputs(untold_failures(result).c_str(), stderr);
+        std::fputs(unreported_failures(result).c_str(), stderr);
         if (!options.compare.empty()) passed = is_as_published(result, options) && passed;
         if (!options.publish.empty()) pins.push_back(pins_json(ci_numbers(result, options.out, solvers, progress), result.seconds()));
         undrawn += write_outputs(result, options.out) ? 0 : 1;

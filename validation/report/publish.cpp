@@ -38,11 +38,11 @@ std::string number(const json& entry, const char* key, const char* form) {
 std::string row(const json& v) {
     const std::string name = text(v, "case");
     std::string why = text(v, "why");
-    const bool only_asked = !text(v, "not_reached").empty();
-    if (only_asked) why += " **Open target, not met:** " + text(v, "not_reached");
+    const bool is_open_target = !text(v, "not_reached").empty();
+    if (is_open_target) why += " **Open target, not met:** " + text(v, "not_reached");
     if (!text(v, "note").empty()) why += " **" + text(v, "note") + "**";
     return fmt::format("| {} | {} | {} | {} | {} | {} | [svg](svg/{}.svg) | `{}` |\n",
-                       only_asked               ? "open"
+                       is_open_target           ? "open"
                        : v.value("pass", false) ? "pass"
                                                 : "**FAIL**",
                        cell(text(v, "claim")), number(v, "measured", "{:.4g}"), cell(text(v, "bound_text")), cell(why),
@@ -63,7 +63,7 @@ std::string section(const std::vector<const json*>& claims) {
     return s;
 }
 
-/// What was asked of a case and is not met stands first, with its figure.
+/// Open targets come first, each with its value.
 std::string not_reached_table(const json& bounds) {
     if (bounds.empty()) return "";
     std::string s = "## Open targets\n\n| case | claim | target | measured | rationale | reason not met |\n|---|---|---|---|---|---|\n";
@@ -106,7 +106,7 @@ std::string index_markdown(const json& verdicts) {
         "The tests run every case at its small size and compare its values with those published with this page: a changed value fails.\n\n";
     if (const auto unpinned = unpinned_cases(verdicts); !unpinned.empty())
         s += fmt::format("Not verified against the current code: {}.\n\n", fmt::join(unpinned, ", "));
-    s += not_reached_table(asked(verdicts));
+    s += not_reached_table(open_targets(verdicts));
     const std::pair<const char*, std::set<std::string>> parts[] = {
         {"Verification: are the equations solved right?", {"exact", "convergence"}},
         {"Accuracy against solver work", {"iterations"}},

@@ -60,7 +60,7 @@ std::string claims_table(const CaseResult& result) {
     return s;
 }
 
-std::string untold_failures(const CaseResult& result) {
+std::string unreported_failures(const CaseResult& result) {
     std::string s;
     for (const auto& v : result.variants)
         for (const RunResult& run : v.runs) {

@@ -36,8 +36,8 @@ void choose(StressStudy& study, const StabilityOptions& options) {
         std::erase_if(study.stresses, [&](const Stress& s) { return s.name != options.axis; });
         std::erase_if(study.maps, [&](const StressMap& m) { return m.stress.name != options.axis; });
     }
-    if (!options.floors) return;
-    std::erase_if(study.stresses, [](const Stress& s) { return !s.floor; });
+    if (!options.guaranteed_only) return;
+    std::erase_if(study.stresses, [](const Stress& s) { return !s.guaranteed; });
     study.maps.clear();
     for (Stress& s : study.stresses)
         if (options.steps > 0) s.steps = std::min(s.steps, options.steps), s.cut = true;
@@ -86,7 +86,7 @@ void publish_limits(const std::vector<json>& studies, const std::filesystem::pat
     std::string page =
         "# Where it breaks\n\nThis page is written by `weir stability --publish`; nothing in it is typed by hand. Each key is "
         "raised until an invariant breaks; the last value at which none did is the limit.\n\n" +
-        asked_limits_markdown(all) + all_limits_markdown(all);
+        open_targets_markdown(all) + all_limits_markdown(all);
     for (const json& study : all) page += limits_markdown(study);
     output::write_file(folder / "index.md", page);
 }
@@ -94,7 +94,7 @@ void publish_limits(const std::vector<json>& studies, const std::filesystem::pat
 }  // namespace
 
 int stability_command(const StabilityOptions& options, const Solvers& solvers) {
-    if (options.steps > 0 && (!options.floors || !options.publish.empty()))
+    if (options.steps > 0 && (!options.guaranteed_only || !options.publish.empty()))
         throw BadInput("--steps evaluates no limit: give it together with --floors and without --publish");
     const std::vector<StressStudy> studies = prepared(options, solvers);
     if (options.list) {
@@ -116,7 +116,8 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
         std::vector<Limit> limits;
         for (const Stress& s : study.stresses) {
             say(s, "");
-            limits.push_back(options.floors ? check_floor(s, solvers) : find_limit(s, bisection_factor(options.size), solvers));
+            limits.push_back(options.guaranteed_only ? check_guaranteed(s, solvers)
+                                                     : find_limit(s, bisection_factor(options.size), solvers));
             sound = sound && limits.back().passes();
         }
         done.push_back(limits_json(study, limits));

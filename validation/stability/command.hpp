@@ -18,9 +18,9 @@ struct StabilityOptions {
     bool list = false;                 // axes of each, nothing is run
     std::string axis{};                // only this one
     std::filesystem::path compare{};   // published folder: only whether each limit is where it was, by a run at either end
-    bool floors = false;               // only whether each floor still holds: one run an axis
+    bool guaranteed_only = false;      // check only the guaranteed ranges: one run per axis
     Size size = Size::ci;
-    std::int64_t steps = 0;                       // with floors: runs end after so many, and nothing is judged; 0: whole runs
+    std::int64_t steps = 0;                       // with guaranteed_only: runs end after so many, and nothing is judged; 0: whole runs
     std::filesystem::path out = "out/stability";  // <case>.json and limits.csv
     std::filesystem::path publish{};              // folder of the published page; empty: not published
     bool quiet = false;
@@ -29,17 +29,17 @@ struct StabilityOptions {
 /// How near the bisection comes: stable and unstable differ by less than this factor.
 inline real bisection_factor(Size size) { return size == Size::ci ? 1.5 : 1.1; }
 
-/// One line an axis and method: the last stable value, theory, what broke first, where and when, the floor.
+/// One line an axis and method: the last stable value, theory, what broke first, where and when, the guaranteed range.
 std::string limits_table(const StressStudy& study, const std::vector<Limit>& limits);
 nlohmann::json limits_json(const StressStudy& study, const std::vector<Limit>& limits);
 /// Each axis' ends, what its run is hard by, the step and time at which it breaks.
 Numbers numbers_of(const std::vector<Limit>& limits);
 /// Whether the limits are where they were published, by a run at either end of each; where they were found with other rounding, or none
-/// are published, whether their floors hold. The exit code of the command.
+/// are published, whether their guaranteed ranges pass. The exit code of the command.
 int compare_limits(const std::vector<StressStudy>& studies, const std::filesystem::path& published, const Solvers& solvers);
 std::string limits_markdown(const nlohmann::json& study);
-/// What was asked for beyond the floors and is not reached, of all studies; empty where nothing is.
-std::string asked_limits_markdown(const std::vector<nlohmann::json>& studies);
+/// Open targets beyond the guaranteed ranges of all studies; empty where there are none.
+std::string open_targets_markdown(const std::vector<nlohmann::json>& studies);
 /// One table of all studies' limits, by solver.
 std::string all_limits_markdown(const std::vector<nlohmann::json>& studies);
 
@@ -49,7 +49,7 @@ std::string maps_text(const nlohmann::json& study);
 /// "study-dt-against-iterations-flip.svg"
 std::string map_file(const nlohmann::json& study, const nlohmann::json& map);
 
-/// Runs the command and returns its exit code: 1 where a floor is not reached, an axis proves to be another
+/// Runs the command and returns its exit code: 1 where a guaranteed range is not reached, an axis proves to be another
 /// than it says, or published limits are older than the code. Throws BadInput
 /// before anything is run.
 int stability_command(const StabilityOptions& options, const Solvers& solvers = sim::registry());

@@ -34,7 +34,7 @@ Numbers numbers_of(const std::vector<Limit>& limits) {
     for (const Limit& l : limits) {
         const std::string place = place_of(l.stress);
         if (l.last_stable) numbers[place + stable_end] = *l.last_stable;
-        for (const Shown& h : l.hardship) numbers[place + h.quantity] = h.value;
+        for (const MeasuredValue& h : l.preconditions) numbers[place + h.quantity] = h.value;
         if (!l.first_unstable) continue;
         numbers[place + unstable_end] = *l.first_unstable;
         numbers[place + "step that breaks"] = static_cast<real>(l.broke.step);
@@ -55,8 +55,8 @@ int compare_limits(const std::vector<StressStudy>& studies, const std::filesyste
             if (comparable && !there) unpublished.push_back(place_of(s) + "its limit is not published");
             if (there)
                 limits.push_back(*there), sound = sound && there->guarded();
-            else if (s.floor)
-                limits.push_back(check_floor(s, solvers)), sound = sound && limits.back().passes();
+            else if (s.guaranteed)
+                limits.push_back(check_guaranteed(s, solvers)), sound = sound && limits.back().passes();
         }
         fmt::print("{}\n", limits_table(study, limits));
         std::fflush(stdout);

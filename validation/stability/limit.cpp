@@ -13,10 +13,10 @@
 namespace weir::validation {
 namespace {
 
-constexpr int rungs = 6;  // from the low end of an axis to its high end
+constexpr int values_of_axis = 6;  // from the low end of an axis to its high end
 
-/// What there is no value of before the first step.
-bool of_a_step(const std::string& series) {
+/// Returns whether a quantity has no value before the first step.
+bool needs_step(const std::string& series) {
     return series == "divergence" || series == "density_error" || series == "dt" || series == "cfl" || series == "fastest";
 }
 
@@ -91,7 +91,7 @@ std::string_view name(AxisKind kind) { return kind == AxisKind::limit ? "limit" 
 
 std::string Limit::doubt() const {
     if (!climbed) return {};
-    if (stress.asked && last_stable && *last_stable >= *stress.asked) return "the open target is met: list it as a floor";
+    if (stress.open_target && last_stable && *last_stable >= *stress.open_target) return "the open target is met: list it as a floor";
     if (first_unstable && stress.kind == AxisKind::units) return "dimensionally similar parameter values do not all pass";
     if (first_unstable && !stress.unbroken.empty()) return "it fails, although the study states that it cannot";
     if (!first_unstable && stress.kind == AxisKind::limit && stress.unbroken.empty())
@@ -121,7 +121,7 @@ Variant pushed_to(const Stress& stress, real value) {
 }
 
 std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers,
-                                 std::vector<Shown>* shown) {
+                                 std::vector<MeasuredValue>* measured) {
     const auto schemas = scene::schemas_of(solvers);
     auto scene = scene_of(variant, 0, schemas);
     const auto failed = [](const NumericalFailure& failure, std::int64_t step, real time) {
@@ -141,18 +141,18 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
     }
     std::vector<Watch> watches;
     for (const Invariant& invariant : stress.watch) watches.emplace_back(invariant, value);
-    Hardship hardship(stress.proof, value);
-    const auto prove = [&](bool at_start) {
-        if (const std::string what = hardship.missing(at_start); !what.empty())
+    Preconditions preconditions(stress.preconditions, value);
+    const auto check = [&](bool at_start) {
+        if (const std::string what = preconditions.missing(at_start); !what.empty())
             throw BadInput(fmt::format("axis \"{}\"{}{} at {:g} does not meet its stated difficulty: {}", stress.name,
                                        stress.method.empty() ? "" : " of ", stress.method, value, what));
     };
-    hardship.start(*simulation), prove(true);
+    preconditions.start(*simulation), check(true);
     StepReport report;
     const auto broken = [&]() -> std::optional<Break> {
         for (Watch& watch : watches) {
             const std::string& series = watch.invariant().series;
-            if (simulation->steps() == 0 && of_a_step(series)) continue;
+            if (simulation->steps() == 0 && needs_step(series)) continue;
             if (const real v = value_of(series, *simulation, report); !watch.holds(v))
                 return Break{fmt::format("{}: {:.4g}", watch.invariant().text(), v), watch.invariant().text(), simulation->steps(),
                              simulation->time()};
@@ -166,17 +166,17 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
         } catch (const NumericalFailure& failure) {
             return failed(failure, simulation->steps() + 1, simulation->time());
         }
-        hardship.step(*simulation, report);
+        preconditions.step(*simulation, report);
         if (auto found = broken()) return found;
     }
-    hardship.end(*simulation, report);
-    if (!stress.cut) prove(false);
-    if (shown) *shown = hardship.shown();
+    preconditions.end(*simulation, report);
+    if (!stress.cut) check(false);
+    if (measured) *measured = preconditions.measured();
     return std::nullopt;
 }
 
-std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers, std::vector<Shown>* shown) {
-    return run_watched(pushed_to(stress, value), stress, value, solvers, shown);
+std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers, std::vector<MeasuredValue>* measured) {
+    return run_watched(pushed_to(stress, value), stress, value, solvers, measured);
 }
 
 std::vector<std::vector<std::optional<Break>>> fill_map(const StressMap& map, const Solvers& solvers,
@@ -209,8 +209,9 @@ Limit bisect(const Stress& stress, real factor, const std::function<std::optiona
     // Climbed in equal steps of the logarithm: what is stable at the end of an axis need not be so below it.
     const bool tried = stress.nested && stress.high < infinity;
     bool holds = !(tried && stable(stress.high)) && stable(stress.low);
-    for (int rung = 1; holds && stress.high < infinity && rung <= rungs; ++rung)
-        holds = stable(rung == rungs ? stress.high : stress.low * std::pow(stress.high / stress.low, static_cast<real>(rung) / rungs));
+    for (int k = 1; holds && stress.high < infinity && k <= values_of_axis; ++k)
+        holds = stable(k == values_of_axis ? stress.high
+                                           : stress.low * std::pow(stress.high / stress.low, static_cast<real>(k) / values_of_axis));
     if (limit.last_stable && limit.first_unstable)
         while (*limit.first_unstable > factor * *limit.last_stable) stable(std::sqrt(*limit.last_stable * *limit.first_unstable));
     limit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -219,30 +220,30 @@ Limit bisect(const Stress& stress, real factor, const std::function<std::optiona
 
 namespace {
 
-/// The limit with what the proofs came to at its last stable value.
-Limit proven(const Stress& axis, const Stress& stress, real factor, const Solvers& solvers) {
-    std::vector<Shown> latest, at_last_stable;
+/// The limit with the measured preconditions at its last stable value.
+Limit with_preconditions(const Stress& axis, const Stress& stress, real factor, const Solvers& solvers) {
+    std::vector<MeasuredValue> latest, at_last_stable;
     Limit limit = bisect(axis, factor, [&](real value) {
         const auto broke = push(stress, value, solvers, &latest);
         if (!broke) at_last_stable = latest;
         return broke;
     });
-    limit.hardship = at_last_stable;
+    limit.preconditions = at_last_stable;
     return limit;
 }
 
 }  // namespace
 
-Limit check_floor(const Stress& stress, const Solvers& solvers) {
-    Stress at_floor = stress;
-    at_floor.low = *stress.floor, at_floor.high = infinity;  // nothing further is tried
-    return proven(at_floor, stress, 1, solvers);
+Limit check_guaranteed(const Stress& stress, const Solvers& solvers) {
+    Stress at_guaranteed = stress;
+    at_guaranteed.low = *stress.guaranteed, at_guaranteed.high = infinity;  // nothing further is tried
+    return with_preconditions(at_guaranteed, stress, 1, solvers);
 }
 
 Limit recheck(const Stress& stress, std::optional<real> last_stable, std::optional<real> first_unstable, const Solvers& solvers) {
     Limit limit{.stress = stress, .climbed = true};
     const auto start = std::chrono::steady_clock::now();
-    if (last_stable && !push(stress, *last_stable, solvers, &limit.hardship)) limit.last_stable = last_stable;
+    if (last_stable && !push(stress, *last_stable, solvers, &limit.preconditions)) limit.last_stable = last_stable;
     if (first_unstable)
         if (const auto broke = push(stress, *first_unstable, solvers)) limit.first_unstable = first_unstable, limit.broke = *broke;
     limit.runs = last_stable.has_value() + first_unstable.has_value();
@@ -251,7 +252,7 @@ Limit recheck(const Stress& stress, std::optional<real> last_stable, std::option
 }
 
 Limit find_limit(const Stress& stress, real factor, const Solvers& solvers) {
-    Limit limit = proven(stress, stress, factor, solvers);
+    Limit limit = with_preconditions(stress, stress, factor, solvers);
     limit.climbed = true;
     return limit;
 }

@@ -3,7 +3,7 @@
 #pragma once
 #include "validation/harness/case.hpp"
 #include "validation/harness/runner.hpp"
-#include "validation/stability/hardship.hpp"
+#include "validation/stability/preconditions.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -27,7 +27,7 @@ struct Invariant {
     std::string text() const;
 };
 
-/// What an axis is for. limit: pushed until something breaks. units: all its rungs are dimensionally similar, so that a break is an
+/// What an axis is for. limit: pushed until something breaks. units: all its values are dimensionally similar, so that a break is an
 /// absolute number in the code. guard: it ends where a guard takes over, or refuses.
 enum class AxisKind { limit, units, guard };
 std::string_view name(AxisKind kind);
@@ -44,17 +44,17 @@ struct Stress {
     std::string hard_because{};
     std::optional<real> theory{};  // the limit that theory gives
     std::string theory_source{};
-    std::optional<real> floor{};  // the least that must be stable
-    std::string floor_why{};
-    std::optional<real> asked{};  // more than the floor, and not reached: listed, and an error once it holds
-    std::string not_reached{};    // why
-    bool nested = false;          // a run at one value contains those at all lesser ones: the end is tried first
-    std::int64_t steps = 0;       // a run ends here if its scene has not ended before
-    bool cut = false;             // before the hardship has come: nothing is proven at the end
+    std::optional<real> guaranteed{};  // the value up to which runs must be stable
+    std::string guaranteed_why{};
+    std::optional<real> open_target{};  // above `guaranteed`, not met: listed, and an error once it is met
+    std::string not_reached{};          // why
+    bool nested = false;                // a run at one value contains those at all lesser ones: the end is tried first
+    std::int64_t steps = 0;             // a run ends here if its scene has not ended before
+    bool cut = false;                   // before the preconditions hold: preconditions at the end are not checked
     Variant base{};
     std::vector<Invariant> watch{};
-    std::vector<Proof> proof{};  // that the hardship is there, at each value
-    std::string unbroken{};      // limit: why nothing can break however far it is pushed
+    std::vector<Precondition> preconditions{};  // of each value
+    std::string unbroken{};                     // limit: why nothing can break however far it is pushed
 };
 
 /// One axis of a two-axis map: a key and its values, as they stand in a scene.
@@ -94,15 +94,15 @@ struct Break {
 
 struct Limit {
     Stress stress{};
-    bool climbed = false;                  // the whole axis was tried, not only its floor
-    std::optional<real> last_stable{};     // absent: not even the low end is
-    std::optional<real> first_unstable{};  // absent: the high end is still stable
-    Break broke{};                         // at first_unstable
-    std::vector<Shown> hardship{};         // at last_stable, or where nothing is stable at the low end
+    bool climbed = false;                        // the whole axis was tried, not only its guaranteed range
+    std::optional<real> last_stable{};           // absent: not even the low end is
+    std::optional<real> first_unstable{};        // absent: the high end is still stable
+    Break broke{};                               // at first_unstable
+    std::vector<MeasuredValue> preconditions{};  // at last_stable, or where nothing is stable at the low end
     int runs = 0;
     double seconds = 0;
-    bool guarded() const { return !stress.floor || (last_stable && *last_stable >= *stress.floor); }
-    /// What speaks against the axis itself: it ends before anything breaks and nobody says why, it breaks though that was ruled out,
+    bool guarded() const { return !stress.guaranteed || (last_stable && *last_stable >= *stress.guaranteed); }
+    /// What speaks against the axis itself: it ends before anything breaks without a reason, it breaks though that was ruled out,
     /// another kind of axis breaks, or what is listed as not reached holds. Empty where nothing does.
     std::string doubt() const;
     bool passes() const { return guarded() && doubt().empty(); }
@@ -113,18 +113,18 @@ Variant pushed_to(const Stress& stress, real value);
 
 /// Runs the configuration until something breaks, its scene ends or so many steps are taken; nothing broke: no value. A state that the
 /// solver refuses to start from is a break at step 0; a scene that does not read is BadInput, and so is a run that is not as hard as its
-/// axis says. shown: what its proofs came to.
+/// axis says. measured: its preconditions.
 std::optional<Break> run_watched(const Variant& variant, const Stress& stress, real value, const Solvers& solvers,
-                                 std::vector<Shown>* shown = nullptr);
+                                 std::vector<MeasuredValue>* measured = nullptr);
 
 /// The same with the axis at `value`.
-std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers, std::vector<Shown>* shown = nullptr);
+std::optional<Break> push(const Stress& stress, real value, const Solvers& solvers, std::vector<MeasuredValue>* measured = nullptr);
 
 /// Climbs the axis until something breaks, then bisects in the logarithm until stable and unstable differ by less than `factor`.
 Limit find_limit(const Stress& stress, real factor, const Solvers& solvers);
 
-/// Whether the floor holds, by one run at it.
-Limit check_floor(const Stress& stress, const Solvers& solvers);
+/// Checks the guaranteed range by one run at its end.
+Limit check_guaranteed(const Stress& stress, const Solvers& solvers);
 
 /// The two ends of a limit that was found before, each run once: without what does not hold there now. Either may be absent.
 Limit recheck(const Stress& stress, std::optional<real> last_stable, std::optional<real> first_unstable, const Solvers& solvers);

@@ -141,13 +141,13 @@ bool is_for(const Table& entry, const std::string& method) {
     return std::find(of.begin(), of.end(), method) != of.end();
 }
 
-std::vector<Proof> proofs(const Table& axis, const std::string& method, VariantReader& reader) {
-    std::vector<Proof> list;
+std::vector<Precondition> preconditions(const Table& axis, const std::string& method, VariantReader& reader) {
+    std::vector<Precondition> list;
     for (const Table& p : axis.tables("proof")) {
         if (!is_for(p, method)) continue;
-        list.push_back({.when = p.text("when") == "start"  ? Proof::When::start
-                                : p.text("when") == "most" ? Proof::When::most
-                                                           : Proof::When::end,
+        list.push_back({.when = p.text("when") == "start"  ? Precondition::When::start
+                                : p.text("when") == "most" ? Precondition::When::most
+                                                           : Precondition::When::end,
                         .quantity = reader.said(p, "quantity"),
                         .at_least = optional_number(p, "at_least"),
                         .at_most = optional_number(p, "at_most"),
@@ -202,18 +202,19 @@ Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader
              .hard_because = reader.said(axis, "hard_because"),
              .theory = optional_number(axis, "theory"),
              .theory_source = axis.text_or("theory_source", ""),
-             .floor = optional_number(axis, "floor"),
-             .floor_why = axis.text_or("floor_why", ""),
-             .asked = optional_number(axis, "asked"),
+             .guaranteed = optional_number(axis, "floor"),
+             .guaranteed_why = axis.text_or("floor_why", ""),
+             .open_target = optional_number(axis, "asked"),
              .not_reached = axis.text_or("not_reached", ""),
              .nested = axis.flag("nested"),
              .base = method};
     if (s.low >= s.high) reader.problem(axis.place("low"), "\"low\" must be less than \"high\"");
-    if (s.floor && s.floor_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
-    if (s.asked && s.not_reached.empty()) reader.problem(axis.place("asked"), "\"asked\" needs a \"not_reached\"");
-    if (s.asked && (!s.floor || *s.floor >= *s.asked)) reader.problem(axis.place("asked"), "\"asked\" needs a \"floor\" that is smaller");
+    if (s.guaranteed && s.guaranteed_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
+    if (s.open_target && s.not_reached.empty()) reader.problem(axis.place("asked"), "\"asked\" needs a \"not_reached\"");
+    if (s.open_target && (!s.guaranteed || *s.guaranteed >= *s.open_target))
+        reader.problem(axis.place("asked"), "\"asked\" needs a \"floor\" that is smaller");
     if (s.theory && s.theory_source.empty()) reader.problem(axis.place("theory"), "\"theory\" needs a \"theory_source\"");
-    s.proof = proofs(axis, method.name, reader);
+    s.preconditions = preconditions(axis, method.name, reader);
     s.unbroken = why_unbroken(axis, method.name, s.kind, reader);
     reader.lay_over(s.base, axis);
     const auto holds_value = [](const scene::Override& change) { return change.value.find('<') != std::string::npos; };

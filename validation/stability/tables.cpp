@@ -29,9 +29,9 @@ std::string what_broke(const Limit& l) {
 }
 
 /// "wet_cells 32, film 0.5"
-std::string hardship_of(const Limit& l) {
+std::string preconditions_text(const Limit& l) {
     std::string s;
-    for (const Shown& h : l.hardship) s += fmt::format("{}{} {:.4g}", s.empty() ? "" : ", ", h.quantity, h.value);
+    for (const MeasuredValue& h : l.preconditions) s += fmt::format("{}{} {:.4g}", s.empty() ? "" : ", ", h.quantity, h.value);
     return s;
 }
 
@@ -45,10 +45,11 @@ std::string limits_table(const StressStudy& study, const std::vector<Limit>& lim
                      "guaranteed", "runs", "seconds", "first failure");
     for (const Limit& l : limits) {
         s += fmt::format("  {:4}  {:{}}  {:5} {:>12} {:>8} {:>10} {:>5} {:>8.2f}  {}", l.passes() ? "pass" : "FAIL", name_of(l.stress),
-                         width, name(l.stress.kind), last_stable(l), number(l.stress.theory), number(l.stress.floor), l.runs, l.seconds,
-                         what_broke(l));
+                         width, name(l.stress.kind), last_stable(l), number(l.stress.theory), number(l.stress.guaranteed), l.runs,
+                         l.seconds, what_broke(l));
         s += l.doubt().empty() ? "\n" : fmt::format(" ({})\n", l.doubt());
-        if (l.stress.asked) s += fmt::format("        open target {:.3g}, not met: {}\n", *l.stress.asked, l.stress.not_reached);
+        if (l.stress.open_target)
+            s += fmt::format("        open target {:.3g}, not met: {}\n", *l.stress.open_target, l.stress.not_reached);
     }
     return s;
 }
@@ -60,7 +61,7 @@ json limits_json(const StressStudy& study, const std::vector<Limit>& limits) {
                       {"solver", l.stress.solver},
                       {"method", l.stress.method},
                       {"kind", name(l.stress.kind)},
-                      {"hardship", hardship_of(l)},
+                      {"hardship", preconditions_text(l)},
                       {"doubt", l.doubt()},
                       {"key", l.stress.key},
                       {"hard_because", l.stress.hard_because},
@@ -72,8 +73,8 @@ json limits_json(const StressStudy& study, const std::vector<Limit>& limits) {
         if (l.last_stable) entry["last_stable"] = *l.last_stable;
         if (l.first_unstable) entry["first_unstable"] = *l.first_unstable;
         if (l.stress.theory) entry["theory"] = *l.stress.theory, entry["theory_source"] = l.stress.theory_source;
-        if (l.stress.floor) entry["floor"] = *l.stress.floor, entry["floor_why"] = l.stress.floor_why;
-        if (l.stress.asked) entry["asked"] = *l.stress.asked, entry["not_reached"] = l.stress.not_reached;
+        if (l.stress.guaranteed) entry["floor"] = *l.stress.guaranteed, entry["floor_why"] = l.stress.guaranteed_why;
+        if (l.stress.open_target) entry["asked"] = *l.stress.open_target, entry["not_reached"] = l.stress.not_reached;
         list.push_back(entry);
     }
     return {{"study", study.name}, {"question", study.question}, {"limits", list}, {"maps", json::array()}};
@@ -109,7 +110,7 @@ std::string limits_markdown(const json& study) {
     return s + fmt::format("\nCommit {}, on {}.\n\n", study.value("commit", "unknown"), study.value("machine", "unknown"));
 }
 
-std::string asked_limits_markdown(const std::vector<json>& studies) {
+std::string open_targets_markdown(const std::vector<json>& studies) {
     std::string rows;
     for (const json& study : studies)
         for (const auto& l : study["limits"])

@@ -84,18 +84,18 @@ __kernel void count_frozen(int count, __constant HeatStates* s, __global const d
 }
 
 /* Frozen particles do not move. */
-__kernel void hold(int count, int stride, __constant HeatStates* s, __global const double* enthalpy, __global double* v) {
+__kernel void stop_frozen(int count, int stride, __constant HeatStates* s, __global const double* enthalpy, __global double* v) {
     const int i = get_global_id(0);
     if (i >= count || !is_frozen(enthalpy[i], s)) return;
     for (int a = 0; a < WEIR_DIM; ++a) v[(size_t)a * stride + i] = 0;
 }
-__kernel void hold_prediction(int count, int stride, __constant HeatStates* s, __global const double* enthalpy, __global const double* x,
+__kernel void keep_frozen_prediction(int count, int stride, __constant HeatStates* s, __global const double* enthalpy, __global const double* x,
                               __global double* x_star) {
     const int i = get_global_id(0);
     if (i >= count || !is_frozen(enthalpy[i], s)) return;
     for (int a = 0; a < WEIR_DIM; ++a) x_star[(size_t)a * stride + i] = x[(size_t)a * stride + i];
 }
-__kernel void hold_places(int count, int stride, __constant StateParams* p, __constant HeatStates* s, __global const int* order,
+__kernel void keep_frozen_positions(int count, int stride, __constant StateParams* p, __constant HeatStates* s, __global const int* order,
                           __global const double* enthalpy, __global const double* x, __global float4* at) {
     const int k = get_global_id(0);
     if (k >= count || !is_frozen(enthalpy[order[k]], s)) return;

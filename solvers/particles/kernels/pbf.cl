@@ -62,7 +62,7 @@ __kernel void lambda(int count, int stride, __constant PbfParams* p, __constant 
 }
 
 __kernel void correct(int count, int stride, __constant StateParams* s, __constant PbfParams* p, __constant WallParams* walls,
-                      __global const float4* terms, __global const float* rests, __global uint* clamps, __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to) {
+                      __global const float4* terms, __global const float* rests, __global uint* corrections, __global const float4* from, __global const int* neighbours, __global const int* list, __global float4* to) {
     const int i = get_global_id(0);
     if (i >= count) return;
     const float4 me = from[i];
@@ -86,7 +86,7 @@ __kernel void correct(int count, int stride, __constant StateParams* s, __consta
         (float4)(clamp(free.x, walls->keep_lo[0], walls->keep_hi[0]), clamp(free.y, walls->keep_lo[1], walls->keep_hi[1]),
                  clamp(free.z, walls->keep_lo[2], walls->keep_hi[2]), 0.0f);
     const float4 back = inside - free;
-    count_clamp(dot3(back.x, back.y, back.z, back.x, back.y, back.z), s, clamps);
+    count_correction(dot3(back.x, back.y, back.z, back.x, back.y, back.z), s, corrections);
     to[i] = inside;
 }
 

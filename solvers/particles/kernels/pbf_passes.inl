@@ -68,10 +68,10 @@ static void correct(const PbfPass& a, const ListChunk& chunk) {
         const vf x = i.x + cx, y = i.y + cy, z = i.z + cz;
         const Four inside{kept(x, a.walls, 0), kept(y, a.walls, 1), kept(z, a.walls, 2), broadcast(0)};
         store(a.to, first, live(first, a.count), inside);
-        if (a.clamps) {
+        if (a.corrections) {
             const vf back = square_length(inside.x - x, inside.y - y, inside.z - z);
             const int begin = first < a.own_begin ? a.own_begin - first : 0, end = live(first, a.own_end);
-            tally_clamps(*a.clamps, back, begin, end, a.order + first, a.particles);
+            tally_corrections(*a.corrections, back, begin, end, a.order + first, a.particles);
         }
     }
 }

@@ -40,13 +40,13 @@ __kernel void meet_solids(int count, __constant StateParams* s, __constant Solid
 
 /* After a correction: moves particles out of solids and computes the terms there. */
 __kernel void leave_solids(int count, __constant StateParams* s, __constant SolidSeries* series, __global const SolidPose* poses,
-                           __global uint* clamps, __global float4* at, __global const uchar* near_solid, __global float4* terms) {
+                           __global uint* corrections, __global float4* at, __global const uchar* near_solid, __global float4* terms) {
     const int k = get_global_id(0);
     if (k >= count || !near_solid[k]) return;
     double4 x = world_of(at[k], s);
     if (solids_distance(x, poses) < s->margin) {
         double y[3] = {x.x, x.y, x.z};
-        keep_and_count(y, s, poses, clamps);
+        keep_and_count(y, s, poses, corrections);
         float4 here = at[k];
         here.x = (float)(y[0] - s->centre[0]);
         here.y = (float)(y[1] - s->centre[1]);

@@ -233,7 +233,7 @@ __kernel void advance_densities(int count, int stride, __constant StateParams* s
 #endif
 
 /* x += dt v. A particle that would enter a wall or a solid is moved back and loses its normal velocity. */
-__kernel void drift(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, __global uint* clamps,
+__kernel void drift(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, __global uint* corrections,
                     __global double* x, __global double* v) {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -242,7 +242,7 @@ __kernel void drift(int count, int stride, __constant StateParams* s, __global c
         const size_t at = (size_t)axis * stride + i;
         free[axis] = end[axis] = x[at] + dt * v[at];
     }
-    keep_and_count(end, s, poses, clamps);
+    keep_and_count(end, s, poses, corrections);
     for (int axis = 0; axis < WEIR_DIM; ++axis) {
         const size_t at = (size_t)axis * stride + i;
         if (end[axis] != free[axis]) v[at] = (end[axis] - x[at]) / dt;

@@ -16,19 +16,19 @@ WEIR_FN void keep(double* x, __constant StateParams* s, __global const SolidPose
     for (int a = 0; a < WEIR_DIM; ++a) x[a] = kept_inside(x[a], s, a);
 }
 
-/* The same; clamps: number of boundary corrections larger than rounding, and the largest distance [m] as the bits of a float, which are
+/* The same; corrections: number of boundary corrections larger than rounding, and the largest distance [m] as the bits of a float, which are
    ordered like nonnegative floats. */
-WEIR_FN void count_clamp(double by2, __constant StateParams* s, __global uint* clamps) {
+WEIR_FN void count_correction(double by2, __constant StateParams* s, __global uint* corrections) {
     if (!(by2 > s->least_back * s->least_back)) return;
-    atomic_inc(clamps);
-    atomic_max(clamps + 1, as_uint((float)sqrt(by2)));
+    atomic_inc(corrections);
+    atomic_max(corrections + 1, as_uint((float)sqrt(by2)));
 }
-WEIR_FN void keep_and_count(double* x, __constant StateParams* s, __global const SolidPose* poses, __global uint* clamps) {
+WEIR_FN void keep_and_count(double* x, __constant StateParams* s, __global const SolidPose* poses, __global uint* corrections) {
     const double before[3] = {x[0], x[1], WEIR_DIM == 3 ? x[2] : 0};
     keep(x, s, poses);
     double by2 = 0;
     for (int a = 0; a < WEIR_DIM; ++a) by2 += (x[a] - before[a]) * (x[a] - before[a]);
-    count_clamp(by2, s, clamps);
+    count_correction(by2, s, corrections);
 }
 
 /* The forces of the scene: v + dt f. pull: dt omega^2 */
@@ -44,7 +44,7 @@ WEIR_FN double forced(double u, double x, double dt, double pull, __constant Sta
 
 /* v += dt f, x* = x + dt v                                                    Macklin & Mueller 2013, algorithm 1, lines 1-4 */
 __kernel void predict(int count, int stride, __constant StateParams* s, __global const SolidPose* poses, double dt, double pull,
-                      __global uint* clamps, __global const double* x, __global double* v, __global double* x_star) {
+                      __global uint* corrections, __global const double* x, __global double* v, __global double* x_star) {
     const int i = get_global_id(0);
     if (i >= count) return;
     double y[3];
@@ -53,7 +53,7 @@ __kernel void predict(int count, int stride, __constant StateParams* s, __global
         v[at] = forced(v[at], x[at], dt, pull, s, a);
         y[a] = x[at] + dt * v[at];
     }
-    keep_and_count(y, s, poses, clamps);
+    keep_and_count(y, s, poses, corrections);
     for (int a = 0; a < WEIR_DIM; ++a) x_star[(size_t)a * stride + i] = y[a];
 }
 

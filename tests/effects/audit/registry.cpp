@@ -1,5 +1,5 @@
 // Only what a scene calls for, for every effect of every solver in the registry. A new one is audited by being registered.
-// Blind to work that a plain step does for the sake of an effect inside a pass of its own, with no field, byte or allocation for it:
+// Not covered: work that a plain step does for the sake of an effect inside a pass of its own, with no field, byte or allocation for it:
 // count.cpp sees that.
 #include "sim/registry.hpp"
 #include "core/parallel.hpp"

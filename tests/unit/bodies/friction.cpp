@@ -1,4 +1,4 @@
-// Bodies that the fluid sticks to: torque between cylinders, what the fluid loses and the body gets, bodies without mass, restart.
+// Bodies with no slip in a viscous fluid: torque between cylinders, what the fluid loses and the body gets, bodies without mass, restart.
 #include "flow/body_friction.hpp"
 #include "support.hpp"
 
@@ -56,7 +56,7 @@ TEST("what friction takes from the fluid the body gets, but for what the sides t
     const auto momentum = [&] {
         real sum = 0;
         for_each_in(Index<2>{}, s.u[1].extent(), [&](const Index<2>& I) {
-            if (s.grip->takes_part[1](I) != 0) sum += s.rho * s.u.cell_volume() * s.u[1](I);
+            if (s.no_slip_walls->takes_part[1](I) != 0) sum += s.rho * s.u.cell_volume() * s.u[1](I);
         });
         return sum;
     };
@@ -66,7 +66,7 @@ TEST("what friction takes from the fluid the body gets, but for what the sides t
     real sides = 0;  // the ends of the box hold the fluid that runs at them
     for (int i = 0; i < 32; ++i)
         for (const int j : {1, 31}) sides -= dt * s.nu * s.rho * s.u[1]({i, j});
-    const real got = s.grip->riders[0].impulse[1];
+    const real got = s.no_slip_walls->bodies[0].impulse[1];
     EXPECT_GT(got, 0.1);  // [N s/m]: the disc of 251 kg/m sinks, and friction holds it
     // The tolerance of the solve is 1e-6 of its right-hand side, in the norm that momentum has.
     EXPECT_NEAR(momentum() - before + got, sides, 1e-4 * got);

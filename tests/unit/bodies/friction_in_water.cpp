@@ -1,4 +1,4 @@
-// Bodies that a liquid with a free surface sticks to: torque between cylinders, what the one loses and the other gets, restart, threads.
+// Bodies with no slip in a liquid with a free surface: torque between cylinders, what the one loses and the other gets, restart, threads.
 #include "staggered/bodies_in_flow.hpp"
 #include "support.hpp"
 
@@ -57,7 +57,7 @@ bodies = [ {{ shape = "sphere", centre = [0.625, 0.625, 0.625], radius = 0.25, d
 
 /// A ball that moves and turns in a box full of liquid that moves at random about it, and one step of friction.
 template <int D>
-struct Rubbed {
+struct FluidWithFriction {
     scene::Scene scene = scene_of(D == 2 ? R"(solver = "mac_water"
 dim = 2
 grid = { cells = [40, 40], size = [1.0, 1.0] }
@@ -85,7 +85,7 @@ bodies = [ { shape = "sphere", centre = [0.36, 0.34, 0.35], radius = 0.07, densi
     MacVelocity<D> before;
     const rigid::Body<D>& body() const { return bodies.bodies()[0]; }
 
-    explicit Rubbed(real dt) {
+    explicit FluidWithFriction(real dt) {
         all_liquid.phi.fill(-1);
         for_each_cell(s.extent(), [&](const Index<D>& I) { closed(I) = s.cells(I) == poisson::Cell::solid; });
         std::uint64_t key = 0;
@@ -96,15 +96,15 @@ bodies = [ { shape = "sphere", centre = [0.36, 0.34, 0.35], radius = 0.07, densi
                 s.u[a][i] = near ? hashed_random(7, ++key, 0) - 0.5 : 0;
             }
         bodies.start(s, solids);
-        bodies.stick(s, true);
-        bodies.grip(s, solids, dt);
-        for (const auto& f : s.grip->inside) s.u[f.axis](f.face) = 0;  // no liquid
+        bodies.couple_friction(s, true);
+        bodies.set_no_slip_walls(s, solids, dt);
+        for (const auto& f : s.no_slip_walls->inside) s.u[f.axis](f.face) = 0;  // no liquid
         before = s.u;
         water::SurfaceViscosity<D> viscosity(frame, s, 1, true);
-        viscosity.hold_bodies(s);
-        viscosity.aim(1e-15);
+        viscosity.enforce_bodies(s);
+        viscosity.set_tolerance(1e-15);
         viscosity.apply(s, all_liquid, closed, dt);
-        for (const auto& f : s.grip->inside) s.u[f.axis](f.face) = 0;
+        for (const auto& f : s.no_slip_walls->inside) s.u[f.axis](f.face) = 0;
     }
     /// What the liquid has gained of momentum, then of angular momentum about the body.
     rigid::Twist<D> gained() const {
@@ -143,9 +143,10 @@ TEST("the torque on a ball that turns in a hollow ball is exact to second order 
 
 TEST_IN_2D_AND_3D("of momentum and of angular momentum a body gets from friction what the liquid loses, to round-off") {
     const OneThread alone;
-    const Rubbed<D> rubbed(2e-4);  // dt nu/h^2 = 0.0032, of which the sides, nine cells from what moves, see the ninth power
-    const auto gained = rubbed.gained();
-    const auto& got = rubbed.s.grip->riders[0].impulse;
+    const FluidWithFriction<D> with_friction(
+        2e-4);  // dt nu/h^2 = 0.0032, of which the sides, nine cells from what moves, see the ninth power
+    const auto gained = with_friction.gained();
+    const auto& got = with_friction.s.no_slip_walls->bodies[0].impulse;
     real size = 0;
     for (const real q : got) size = std::max(size, std::abs(q));
     EXPECT_GT(size, 1e-3);
@@ -155,18 +156,18 @@ TEST_IN_2D_AND_3D("of momentum and of angular momentum a body gets from friction
 
 TEST("liquid that turns with a body as one does not rub it") {
     const OneThread alone;
-    Rubbed<2> r(2e-3);
+    FluidWithFriction<2> r(2e-3);
     const auto& body = r.body();
     for (int a = 0; a < 2; ++a)
         for (std::size_t i = 0; i < r.s.u[a].size(); ++i) {
             const Vec<2> at = r.s.u.face_centre(a, staggered::index_of<2>(r.s.u[a].extent(), i));
-            r.s.u[a][i] = staggered::WallGrip<2>::along(staggered::moves_at<2>(a, at - body.at), body.velocity);
+            r.s.u[a][i] = staggered::NoSlipWalls<2>::along(staggered::moves_at<2>(a, at - body.at), body.velocity);
         }
     water::SurfaceViscosity<2> viscosity(r.frame, r.s, 1, true);
-    viscosity.hold_bodies(r.s);
+    viscosity.enforce_bodies(r.s);
     viscosity.apply(r.s, r.all_liquid, r.closed, 1e-4);
     // The box's own sides stop the liquid's way through them; ten cells away that is a part of (dt nu/h^2 = 0.0016)^10.
-    for (const real q : r.s.grip->riders[0].impulse) EXPECT_NEAR(q, 0, 1e-12);
+    for (const real q : r.s.no_slip_walls->bodies[0].impulse) EXPECT_NEAR(q, 0, 1e-12);
 }
 
 TEST("a disc without mass is carried and turned by viscous liquid, whatever the step") {
@@ -184,7 +185,7 @@ TEST("a disc without mass is carried and turned by viscous liquid, whatever the 
     EXPECT_LT(std::abs(shown(*solver, "spin", 0)), 1.0);  // nothing kept it turning
 }
 
-TEST("a disc that spins over the liquid is not rubbed, and one that floats at rest feels its weight alone") {
+TEST("a disc that spins over the liquid feels no friction, and one that floats at rest feels its weight alone") {
     const OneThread alone;
     const std::string over =
         "{ shape = \"sphere\", centre = [0.3, 1.05], radius = 0.12, density = 500.0, spin = [3.0], slip = \"no\", fixed = [\"y\"] }";

@@ -67,16 +67,16 @@ struct Exchange {
 TEST_IN_2D_AND_3D("friction adds no mass to a body along the normal") {
     const OneThread alone;
     for (const real stiff : {0.0, 0.01, 3.0})
-        for (const real rub : {0.0, 0.5, 20.0}) {
+        for (const real friction : {0.0, 0.5, 20.0}) {
             Exchange<D> e;
-            e.meeting.stiff = stiff, e.meeting.rub = rub;
+            e.meeting.stiff = stiff, e.meeting.friction = friction;
             const real m = e.fluid.mass, g = 2, pull2 = dot(e.meeting.pull, e.meeting.pull);
             const Vec<D> given = e.give(g * e.normal);
             const real change = -m * g / (e.body.mass + m * stiff * pull2);
-            EXPECT_NEAR(dot(e.velocity(), e.normal), change, 1e-12 * g) << stiff << ' ' << rub;
+            EXPECT_NEAR(dot(e.velocity(), e.normal), change, 1e-12 * g) << stiff << ' ' << friction;
             EXPECT_NEAR(norm(e.velocity() - change * e.normal), 0, 1e-12 * g);
             for (std::size_t k = D; k < rigid::freedoms<D>; ++k) EXPECT_NEAR(e.body.velocity[k], 0, 1e-12 * g / radius);
-            EXPECT_NEAR(norm(e.body.mass * e.velocity() + m * given), 0, 1e-12 * m * g) << "momentum: " << stiff << ' ' << rub;
+            EXPECT_NEAR(norm(e.body.mass * e.velocity() + m * given), 0, 1e-12 * m * g) << "momentum: " << stiff << ' ' << friction;
         }
 }
 
@@ -85,17 +85,17 @@ TEST_IN_2D_AND_3D("friction adds no mass to a body along the normal") {
 TEST_IN_2D_AND_3D("stiffness adds no mass to a body across the normal") {
     const OneThread alone;
     for (const real stiff : {0.0, 3.0})
-        for (const real rub : {0.0, 0.5, 20.0}) {
+        for (const real friction : {0.0, 0.5, 20.0}) {
             Exchange<D> e;
-            e.meeting.stiff = stiff, e.meeting.rub = rub;
+            e.meeting.stiff = stiff, e.meeting.friction = friction;
             const real m = e.fluid.mass, g = 2, kappa = e.response_across();
             const Vec<D> given = e.give(g * e.tangent);
-            const real impulse = -m * g / (1 + m * rub * kappa);
-            EXPECT_NEAR(dot(e.velocity(), e.tangent), impulse / e.body.mass, 1e-12 * g) << stiff << ' ' << rub;
+            const real impulse = -m * g / (1 + m * friction * kappa);
+            EXPECT_NEAR(dot(e.velocity(), e.tangent), impulse / e.body.mass, 1e-12 * g) << stiff << ' ' << friction;
             EXPECT_NEAR(dot(e.velocity(), e.normal), 0, 1e-12 * g);
             real spin2 = 0;
             for (std::size_t k = D; k < rigid::freedoms<D>; ++k) spin2 += e.body.velocity[k] * e.body.velocity[k];
             EXPECT_NEAR(std::sqrt(spin2), std::abs(impulse) * radius / e.body.principal[2], 1e-11 * g / radius);
-            EXPECT_NEAR(norm(e.body.mass * e.velocity() + m * given), 0, 1e-12 * m * g) << "momentum: " << stiff << ' ' << rub;
+            EXPECT_NEAR(norm(e.body.mass * e.velocity() + m * given), 0, 1e-12 * m * g) << "momentum: " << stiff << ' ' << friction;
         }
 }

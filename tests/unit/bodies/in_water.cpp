@@ -121,7 +121,7 @@ joints = [ {{ kind = "mooring", body = "duck", at = [0.25, 0.26, 0.3], anchor = 
     EXPECT_LT(shown(*one, "position", 1, 0), 0.25 * 0.162 + 0.3);  // the line has drawn the duck down
 }
 
-TEST("fifty balls that a wave wedges in a heap are not thrown, though the added mass that was learnt of them is several times too small") {
+TEST("fifty balls that a wave wedges in a heap are not thrown, though their estimated added mass is several times too small") {
     const OneThread alone;
     const real radius = 0.025;
     std::string balls;
@@ -177,7 +177,7 @@ TEST("a scene without bodies holds no byte of them, and runs no pass") {
     with->step(0.01);
     std::int64_t placed = 0;
     for (const auto& entry : with->passes().list()) placed += entry.name == "solids" ? entry.calls : 0;
-    EXPECT_EQ(placed, 1) << "what bodies close of the grid is found anew once a step, and timed";
+    EXPECT_EQ(placed, 1) << "what bodies close of the grid is found anew in each step, once, and timed";
     EXPECT_EQ(without->fields().find(rigid::body_set_name, "position"), nullptr);
 }
 
@@ -275,7 +275,7 @@ bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], densi
     staggered::SolidPlacement<3> placement(staggered::BodiesInFlow<3>::solids(scene, bodies.get()), state);
     bodies->start(state, placement);
     for (int step = 0; step < 60; ++step) {
-        bodies->fly(placement, 0.01);
+        bodies->advance_free(placement, 0.01);
         state.time += 0.01;
         placement.place(state, state.time);
         expect_placed_as_a_whole(state, placement.solids(), scene, true);

@@ -53,7 +53,7 @@ TEST("writing where nothing can be written is an output error and leaves nothing
 namespace {
 
 /// A block of numbers that ranks share, and one that all have.
-void write_over_ranks(const std::filesystem::path& path, std::size_t count) {
+void write_in_parallel(const std::filesystem::path& path, std::size_t count) {
     const Checkpoint::Held share = Checkpoint::Held{0, count, count, false}.share(slabs().rank(), slabs().ranks());
     std::vector<double> own;
     for (std::size_t i = share.begin; i < share.end; ++i) own.push_back(0.5 * static_cast<double>(i));
@@ -84,14 +84,14 @@ TEST(
     "a checkpoint of several ranks has the bytes of one, and each of other ranks reads no more than its part and its part of the "
     "checksum") {
     constexpr std::size_t count = 30001;
-    write_over_ranks(scratch("one"), count);
+    write_in_parallel(scratch("one"), count);
     const std::string whole = bytes_of(scratch("one"));
     for (const int ranks : {2, 3}) {
-        test::over_ranks(ranks, [] { write_over_ranks(scratch("several"), count); });
+        test::on_ranks(ranks, [] { write_in_parallel(scratch("several"), count); });
         EXPECT_TRUE(bytes_of(scratch("several")) == whole) << ranks;
     }
     for (const int ranks : {1, 2, 4})
-        test::over_ranks(ranks, [&] {
+        test::on_ranks(ranks, [&] {
             const Checkpoint in = Checkpoint::read(scratch("several"));
             const auto share = in.held<double>("field").share(slabs().rank(), slabs().ranks());
             std::vector<double> own(share.end - share.begin);
@@ -107,9 +107,9 @@ TEST(
 
 TEST("while a rank reads, it holds its part and a piece of the file") {
     constexpr std::size_t count = std::size_t{1} << 22;  // 32 MiB
-    write_over_ranks(scratch("large"), count);
+    write_in_parallel(scratch("large"), count);
     for (const int ranks : {1, 2, 4})
-        test::over_ranks(ranks, [&] {
+        test::on_ranks(ranks, [&] {
             const long before = test::held;
             test::most_held = before;
             const Checkpoint in = Checkpoint::read(scratch("large"));
@@ -123,7 +123,7 @@ TEST("while a rank reads, it holds its part and a piece of the file") {
 }
 
 TEST("several ranks refuse a file alike, whichever of them sees what is wrong") {
-    write_over_ranks(scratch("right"), 1000);
+    write_in_parallel(scratch("right"), 1000);
     const std::string whole = bytes_of(scratch("right"));
     const auto bad = scratch("wrong");
     for (std::size_t at = 0; at < whole.size(); at += 401) {  // some in each rank's part
@@ -133,15 +133,15 @@ TEST("several ranks refuse a file alike, whichever of them sees what is wrong") 
             std::ofstream(bad, std::ios::binary) << text;
             const std::string one = refusal(bad);
             EXPECT_FALSE(one.empty()) << "byte " << at;
-            test::over_ranks(3, [&] { EXPECT_EQ(refusal(bad), one) << "byte " << at << ", rank " << slabs().rank(); });
+            test::on_ranks(3, [&] { EXPECT_EQ(refusal(bad), one) << "byte " << at << ", rank " << slabs().rank(); });
         }
     }
     std::filesystem::remove(bad);
     const std::string one = refusal(bad);
     EXPECT_NE(one.find("cannot read"), std::string::npos);
-    test::over_ranks(3, [&] { EXPECT_EQ(refusal(bad), one); });
+    test::on_ranks(3, [&] { EXPECT_EQ(refusal(bad), one); });
     // a rank for which it is another file, as on a machine with another disk
-    test::over_ranks(3, [&] {
+    test::on_ranks(3, [&] {
         const auto own = scratch("wrong_" + std::to_string(slabs().rank()));
         std::ofstream(own, std::ios::binary) << (slabs().rank() == 1 ? whole.substr(0, 700) : whole);
         EXPECT_NE(refusal(own).find("truncated or altered"), std::string::npos) << slabs().rank();

@@ -57,11 +57,11 @@ std::size_t resident(const Grid<T, D>& q) {
     return bytes;
 }
 
-TEST("a rank holds its planes and so many beyond its cuts, around a ring too, and what lies beyond an end that it comes to") {
+TEST("a rank holds its planes and that number of ghost planes, around a ring too, and what lies beyond an end that it comes to") {
     const Cut cut{{0, 8, 16, 24}};
-    const auto list = [&](int rank, int count, int margin, int deep, bool ring) {
+    const auto list = [&](int rank, int count, int margin, int ghost_planes, bool ring) {
         std::vector<int> planes;
-        const auto held = planes_held(cut, rank, count, margin, deep, ring);
+        const auto held = planes_held(cut, rank, count, margin, ghost_planes, ring);
         for (int k = 0; k < static_cast<int>(held.size()); ++k)
             if (held[static_cast<std::size_t>(k)] != 0) planes.push_back(k - margin);
         return planes;
@@ -77,11 +77,11 @@ TEST(
     "near a rank's own planes are those beside them: around a ring the last too, and there face n is face 0; where one does all, all are") {
     EXPECT_TRUE(planes_near(24, 2, false).empty());
     const ThreeRanks three;
-    EXPECT_TRUE(planes_near(24, 2, false).empty());  // nobody has said that planes are shared
+    EXPECT_TRUE(planes_near(24, 2, false).empty());  // no planes are distributed yet
     const OwnPlanes mine(three.cut);
-    const auto list = [](int count, int deep, bool ring) {
+    const auto list = [](int count, int ghost_planes, bool ring) {
         std::vector<int> planes;
-        const auto near = planes_near(count, deep, ring);
+        const auto near = planes_near(count, ghost_planes, ring);
         EXPECT_EQ(static_cast<int>(near.size()), count);
         for (int k = 0; k < count; ++k)
             if (near[static_cast<std::size_t>(k)] != 0) planes.push_back(k);
@@ -113,7 +113,7 @@ TEST("a copy of as many planes takes no other memory: what is done in every step
     EXPECT_TRUE(from.store().reaches(2) && !from.store().reaches(3) && to.store().reaches(4));
 }
 
-TEST("behind the planes of others there is no memory: whoever looks at them faults; those that are opened keep what stood there") {
+TEST("behind the planes of others there is no memory: an access to them faults; those that are opened keep what stood there") {
     const ThreeRanks three;
     const Index<3> extent{{64, 32, 24}};
     const std::size_t plane = 64 * 32 * sizeof(real);
@@ -148,7 +148,7 @@ TEST("behind the planes of others there is no memory: whoever looks at them faul
     }
 }
 
-TEST("an array that has not the planes of the cut is whole, as all are where nobody asks for less") {
+TEST("an array that has not the planes of the cut is whole, as all are without distributed storage") {
     const ThreeRanks three;
     {
         const OwnPlanes mine(three.cut, 1, 2);

@@ -1,6 +1,6 @@
 // Who owns which planes and what travels: arithmetic that all ranks do alike, against its definition; and that one rank asks for nothing.
-#include "core/cut_by_work.hpp"
 #include "core/grid.hpp"
+#include "core/load_balance.hpp"
 #include "support/test.hpp"
 
 #include <set>
@@ -26,26 +26,26 @@ TEST("planes are cut at multiples of 8 where there are enough, of fewer where no
 TEST("cuts by work: the slabs of a tank whose upper half is empty are in its lower half, and every rank has one") {
     std::vector<std::int64_t> half(128, 0);
     std::fill_n(half.begin(), 64, 1000);
-    EXPECT_EQ(cut_by_work(half, 2).at, (std::vector<int>{0, 32, 128}));
-    EXPECT_EQ(cut_by_work(half, 4).at, (std::vector<int>{0, 16, 32, 48, 128}));
-    EXPECT_TRUE(cut_by_work(half, 1).empty());
+    EXPECT_EQ(load_balanced_cut(half, 2).at, (std::vector<int>{0, 32, 128}));
+    EXPECT_EQ(load_balanced_cut(half, 4).at, (std::vector<int>{0, 16, 32, 48, 128}));
+    EXPECT_TRUE(load_balanced_cut(half, 1).empty());
     const std::vector<std::int64_t> even(64, 7), none(64, 0);
-    EXPECT_EQ(cut_by_work(even, 4), cut_of(64, 4));
-    EXPECT_EQ(cut_by_work(none, 3), cut_of(64, 3));
+    EXPECT_EQ(load_balanced_cut(even, 4), cut_of(64, 4));
+    EXPECT_EQ(load_balanced_cut(none, 3), cut_of(64, 3));
     std::vector<std::int64_t> one(20, 0);  // all of it in the last plane
     one.back() = 5;
     for (const int ranks : {2, 3, 7, 20}) {
-        const Cut cut = cut_by_work(one, ranks);
+        const Cut cut = load_balanced_cut(one, ranks);
         for (int r = 0; r < ranks; ++r) EXPECT_LT(cut.begin(r), cut.end(r, 20)) << ranks;
         EXPECT_EQ(cut.planes(), 20);
     }
 }
 
 /// Beyond both cuts, plane by plane as one would say it.
-std::set<int> wanted(const Cut& cut, int rank, int count, int deep, bool ring) {
+std::set<int> wanted(const Cut& cut, int rank, int count, int ghost_planes, bool ring) {
     std::set<int> planes;
     const int n = cut.planes();
-    for (int plane = cut.begin(rank) - deep; plane < cut.end(rank, n) + deep; ++plane) {
+    for (int plane = cut.begin(rank) - ghost_planes; plane < cut.end(rank, n) + ghost_planes; ++plane) {
         if (plane >= 0 && plane < count) planes.insert(plane);
         if (ring && (plane < 0 || plane >= n)) planes.insert((plane + 8 * n) % n);
     }
@@ -53,23 +53,23 @@ std::set<int> wanted(const Cut& cut, int rank, int count, int deep, bool ring) {
     return planes;
 }
 
-TEST("what all ranks together send to one are the planes beyond its cuts, each once, from its owner; cells and faces, around a ring too") {
+TEST("what all ranks together send to one are its ghost planes, each once, from its owner; cells and faces, around a ring too") {
     for (const int n : {4, 9, 16, 24, 33})
         for (const int ranks : {2, 3, 4})
             for (const int faces : {0, 1})
-                for (const int deep : {1, 3, 7})
+                for (const int ghost_planes : {1, 3, 7})
                     for (const bool ring : {false, true}) {
                         const Cut cut = cut_of(n, ranks);
                         for (int to = 0; to < ranks; ++to) {
                             std::set<int> sent;
                             for (int from = 0; from < ranks; ++from)
-                                for (const PlaneRange& range : halo_from(cut, from, to, n + faces, deep, ring))
+                                for (const PlaneRange& range : halo_from(cut, from, to, n + faces, ghost_planes, ring))
                                     for (int plane = range.begin; plane < range.end; ++plane) {
                                         EXPECT_TRUE(plane >= cut.begin(from) && plane < cut.end(from, n + faces));
                                         EXPECT_TRUE(sent.insert(plane).second) << "twice";
                                     }
-                            EXPECT_EQ(sent, wanted(cut, to, n + faces, std::min(deep, n), ring))
-                                << n << ' ' << ranks << ' ' << deep << ' ' << ring;
+                            EXPECT_EQ(sent, wanted(cut, to, n + faces, std::min(ghost_planes, n), ring))
+                                << n << ' ' << ranks << ' ' << ghost_planes << ' ' << ring;
                         }
                     }
 }
@@ -78,7 +78,7 @@ TEST("one rank owns everything, and an empty cut changes no loop") {
     EXPECT_FALSE(slabs().several());
     const Cut none = cut_of(10, slabs().ranks());
     const OwnPlanes mine(none);
-    EXPECT_FALSE(over_ranks());
+    EXPECT_FALSE(is_distributed());
     int visited = 0;
     const int before = set_threads(1);
     for_each_cell(Index<2>{{3, 10}}, [&](const Index<2>&) { ++visited; });
@@ -101,7 +101,7 @@ public:
     }
 };
 
-TEST("over ranks a loop does its own planes, and a sum adds everybody's in the order of the planes") {
+TEST("in parallel a loop does its own planes, and a sum adds those of all ranks in the order of the planes") {
     set_slabs(std::make_unique<Echo>());
     {
         const Cut cut = cut_of(16, 2);
@@ -112,11 +112,11 @@ TEST("over ranks a loop does its own planes, and a sum adds everybody's in the o
         EXPECT_EQ(plane_sum(16, [](int plane) { return real(plane); }), 120);
         EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 7);  // of the other's, which echo their numbers
         const AllPlanes all;
-        EXPECT_FALSE(over_ranks());
+        EXPECT_FALSE(is_distributed());
         EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 0);
     }
     set_slabs(nullptr);
-    EXPECT_FALSE(over_ranks());
+    EXPECT_FALSE(is_distributed());
 }
 
 }  // namespace

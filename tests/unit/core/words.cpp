@@ -37,7 +37,7 @@ TEST("a regular file is read whole, an empty one too, and up to its limit") {
     }
 }
 
-TEST("devices, pipes that nobody writes to, folders, looped links and empty names are refused at once, with what they are") {
+TEST("devices, pipes without a writer, folders, looped links and empty names are refused at once, with what they are") {
     const test::TemporaryFolder folder;
     const fs::path pipe = folder.path() / "pipe", loop = folder.path() / "loop";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

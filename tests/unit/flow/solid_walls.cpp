@@ -1,4 +1,4 @@
-// Fluid that sticks to solids meets their walls where they are: at any distance from the grid's lines, along any axis, on either side,
+// No-slip walls of solids are met where they are: at any distance from the grid's lines, along any axis, on either side,
 // turning or not; and what it rubs off them is in balance with what drives it.
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"

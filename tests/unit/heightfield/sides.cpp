@@ -53,9 +53,9 @@ TEST("a depth that is edited adds the area of its column times its rise to the p
             ASSERT_NE(edit, fields.end()) << model;
             edit->data[0][25] += 0.01;
             solver->edited(*edit);
-            const real poured = 0.01 * 0.05 * 0.1;
-            EXPECT_NEAR(value(*solver, "volume"), before + poured, 1e-13) << model << exchanged;  // of 0.24 m3
-            EXPECT_NEAR(value(*solver, "poured_volume"), poured, 1e-13) << model << exchanged;
+            const real net_inflow = 0.01 * 0.05 * 0.1;
+            EXPECT_NEAR(value(*solver, "volume"), before + net_inflow, 1e-13) << model << exchanged;  // of 0.24 m3
+            EXPECT_NEAR(value(*solver, "poured_volume"), net_inflow, 1e-13) << model << exchanged;
         }
 }
 

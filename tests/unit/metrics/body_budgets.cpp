@@ -46,7 +46,7 @@ const std::string down = "effects = { gravity = { g = [0.0, -9.81] } }\n";
 
 }  // namespace
 
-TEST("what the body loses the fluid or the walls have; what nobody has is told in parts of the body's momentum") {
+TEST("what the body loses the fluid or the walls have; what is missing is reported in parts of the body's momentum") {
     // 8 of the body's 10 go to the fluid, then 1 of the fluid's to a wall that is pushed with 10 N for 0.1 s
     const auto kept = record(momenta, {{0, 10, 0}, {8, 2, 0}, {7, 2, 0}}, "budget.momentum_x", {0, 0, 10});
     EXPECT_NEAR(measure("budget.momentum_x", kept, {}), 0, 1e-14);

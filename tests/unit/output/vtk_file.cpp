@@ -140,14 +140,14 @@ TEST("what is not a number, numbers beyond all, and none have the extremes that 
         field.fields.fields[0].data = {field.values, field.values, field.values};
         expect_as_vtk(field.fields, {}, {});
     }
-    FieldSet nobody;
+    FieldSet empty;
     const std::vector<real> none;
-    nobody.grid = Field(1, 1).fields.grid;
-    nobody.fields = {{"position", "m", Where::particle, "nobody", {none, none}}, {"mass", "kg", Where::particle, "nobody", {none}}};
-    expect_as_vtk(nobody, {}, {"nobody"});
+    empty.grid = Field(1, 1).fields.grid;
+    empty.fields = {{"position", "m", Where::particle, "none", {none, none}}, {"mass", "kg", Where::particle, "none", {none}}};
+    expect_as_vtk(empty, {}, {"none"});
 }
 
-TEST("over ranks the file has the bytes of one process, wherever its blocks are cut, and by a part that is smaller than a block") {
+TEST("in parallel the file has the bytes of one process, wherever its blocks are cut, and by a part that is smaller than a block") {
     const Field field(700, 500);  // 86 blocks of 4096 numbers, and a part of one
     for (const Compression compression : {Compression::none, Compression::zlib, Compression::lz4})
         for (const std::vector<int>& at : {std::vector<int>{0, 250, 500}, {0, 1, 3, 500}, {0, 499, 500}, {0, 200, 203, 204, 500}}) {
@@ -155,10 +155,10 @@ TEST("over ranks the file has the bytes of one process, wherever its blocks are 
             const std::string alone = written(image_of(fields, 0, {}), compression);
             const TemporaryFolder folder;
             const Cut cut{at};
-            test::over_ranks(cut.ranks(), [&] {
+            test::on_ranks(cut.ranks(), [&] {
                 const auto first = static_cast<std::size_t>(700 * cut.begin(slabs().rank())),
                            last = static_cast<std::size_t>(700 * cut.end(slabs().rank(), 500));
-                Field own = field;  // of what others have nobody may read
+                Field own = field;  // no rank may read the data of others
                 for (std::size_t i = 0; i < own.values.size(); ++i)
                     if (i < first || i >= last) own.values[i] = NAN;
                 own.fields.fields[0].data = {own.values};
@@ -186,7 +186,7 @@ TEST("particles of which each rank has a part, one of them none, follow one anot
     const std::vector<std::size_t> begins{0, 0, 1234, 1300, count};
     for (const bool parts : {true, false}) {
         const TemporaryFolder folder;
-        test::over_ranks(4, [&] {
+        test::on_ranks(4, [&] {
             const auto rank = static_cast<std::size_t>(slabs().rank());
             const FieldSet fields = parts ? set_of(begins[rank], begins[rank + 1], true) : set_of(0, count, false);
             output::write(folder.path() / "file", particles_of(fields, "all", 0, {}), Compression::zlib);
@@ -200,7 +200,7 @@ TEST("what the first rank cannot write is an error of all; what stood there stay
     const TemporaryFolder folder;
     std::ofstream(folder.path() / "file") << "old";
     const Cut cut{{0, 40, 100}};
-    test::over_ranks(2, [&] {
+    test::on_ranks(2, [&] {
         std::signal(SIGXFSZ, SIG_IGN);
         const rlimit small{20000, 20000};
         setrlimit(RLIMIT_FSIZE, &small);

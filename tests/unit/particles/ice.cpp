@@ -53,10 +53,10 @@ Impact fall(const scene::Scene& scene, const Vec<D>& contact, const Vec<D>& norm
     particles::Ice<D> ice(heat, fluid.domain);
     ice.find(fluid);
     EXPECT_EQ(ice.pieces(), 1);
-    ice.fly(bell.dt);
+    ice.advance_free(bell.dt);
     std::array<Vec<D>, 2> place;
     ice.each_place([&](int i, const Vec<D>& x) { place[static_cast<std::size_t>(i)] = x; });
-    ice.arrive(fluid, bell.dt);
+    ice.finish_motion(fluid, bell.dt);
     const Vec<D> move = 0.5 * (place[0] + place[1] - start[0] - start[1]), mean = 0.5 * (fluid.velocity(0) + fluid.velocity(1));
     return {dot(move, normal),
             dot(move, tangent),

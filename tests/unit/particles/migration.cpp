@@ -1,5 +1,6 @@
-// Particles that change hands between ranks, against the definition: whoever owns the cell where a particle stands owns it, with all that
-// the state knows of it, and it is shown to those who read that cell or one of an image of it. Each rank is a process of its own.
+// Particles that migrate between ranks, against the definition: the rank that owns the cell where a particle stands owns it, with all that
+// the state knows of it, and it is a ghost particle of the ranks that read that cell or one of an image of it. Each rank is a process of
+// its own.
 #include "particles/migration.hpp"
 #include "core/error.hpp"
 #include "particles/pairs.hpp"
@@ -63,12 +64,12 @@ struct State {
     }
     std::vector<real>& place() { return numbers[static_cast<std::size_t>(dim)]; }
     int who(int k) { return static_cast<int>(place()[static_cast<std::size_t>(k)]); }
-    HandOver::Arrays arrays() {
-        HandOver::Arrays list;
+    ParticleExchange::Arrays arrays() {
+        ParticleExchange::Arrays list;
         for (auto& array : numbers) list.push_back(&array);
         return list;
     }
-    /// As a step does: guests are dismissed, own ones move, and all change hands.
+    /// As a step does: ghosts are dropped, own ones move, and all migrate.
     void follow(const Cloud& cloud) {
         for (auto& array : numbers)
             if (migration.total() > 0) array.resize(static_cast<std::size_t>(migration.own()));
@@ -82,7 +83,7 @@ struct State {
         for (int k = 0; k < migration.own(); ++k) EXPECT_TRUE(list.insert(who(k)).second) << "twice";
         return list;
     }
-    std::set<int> guests() {
+    std::set<int> ghosts() {
         std::set<int> list;
         for (int k = migration.own(); k < static_cast<int>(place().size()); ++k) EXPECT_TRUE(list.insert(who(k)).second) << "twice";
         return list;
@@ -94,20 +95,20 @@ void expect_as_defined(const Cloud& cloud, State& state) {
     Pairs all(passes_for("sse2"), cloud.frame);
     all.find(cloud.coordinates(), cloud.count(), radius);
     const CellCut& cut = *state.migration.held(state.place()).cut;
-    std::set<int> own, guests;
+    std::set<int> own, ghosts;
     for (int k = 0; k < all.size(); ++k) {
         const int cell = all.cells().cell_of()[static_cast<std::size_t>(k)];
         if (!all.is_image(k) && cut.owner(cell) == slabs().rank()) own.insert(all.owner(k));
-        if (cut.reads(slabs().rank(), cell)) guests.insert(all.owner(k));
+        if (cut.reads(slabs().rank(), cell)) ghosts.insert(all.owner(k));
     }
-    for (const int i : own) guests.erase(i);
+    for (const int i : own) ghosts.erase(i);
     EXPECT_EQ(state.own(), own) << "rank " << slabs().rank();
-    EXPECT_EQ(state.guests(), guests) << "rank " << slabs().rank();
+    EXPECT_EQ(state.ghosts(), ghosts) << "rank " << slabs().rank();
     for (int k = 0; k < static_cast<int>(state.place().size()); ++k) {
         const auto at = static_cast<std::size_t>(k), i = static_cast<std::size_t>(state.who(k));
         for (std::size_t a = 0; a < static_cast<std::size_t>(cloud.dim); ++a) ASSERT_EQ(state.numbers[a][at], cloud.x[a][i]);
         ASSERT_EQ(state.numbers[state.numbers.size() - 2][at], State::shown + state.who(k));
-        const real kept = state.numbers.back()[at];  // of guests nobody has it, and here it is poisoned
+        const real kept = state.numbers.back()[at];  // ghosts lack it, and here it is poisoned
         ASSERT_TRUE(k < state.migration.own() ? kept == State::kept + state.who(k) : std::isnan(kept));
     }
     const std::vector<int> counts = of_ranks(state.migration.own());
@@ -122,7 +123,7 @@ TEST(
     for (const int dim : {2, 3})
         for (const bool repeats : {false, true})
             for (const int ranks : {2, 3, 5})
-                test::over_ranks(
+                test::on_ranks(
                     ranks,
                     [&] {
                         Cloud cloud(dim, repeats);
@@ -142,8 +143,8 @@ TEST(
                     true);
 }
 
-TEST("a particle goes to a neighbour below or above, to a rank that is none, and through a side that repeats, and nobody else moves") {
-    test::over_ranks(
+TEST("a particle goes to a neighbour below or above, to a rank that is none, and through a side that repeats, and no other moves") {
+    test::on_ranks(
         4,
         [] {
             Cloud cloud(2, true);
@@ -188,7 +189,7 @@ TEST("a particle goes to a neighbour below or above, to a rank that is none, and
 }
 
 TEST("a particle near a side that repeats is shown to the rank at the other end") {
-    test::over_ranks(
+    test::on_ranks(
         4,
         [] {
             Cloud cloud(3, true);
@@ -198,13 +199,13 @@ TEST("a particle near a side that repeats is shown to the rank at the other end"
             state.follow(cloud);
             expect_as_defined(cloud, state);
             EXPECT_EQ(state.own().count(0), slabs().rank() == 0 ? 1u : 0u);
-            EXPECT_EQ(state.guests().count(0), slabs().rank() == 3 ? 1u : 0u);
+            EXPECT_EQ(state.ghosts().count(0), slabs().rank() == 3 ? 1u : 0u);
         },
         true);
 }
 
 TEST("a rank whose cells have run empty owns nothing and holds what it reads, and takes part again when particles come back") {
-    test::over_ranks(
+    test::on_ranks(
         4,
         [] {
             Cloud cloud(2, false);
@@ -227,7 +228,7 @@ TEST("a rank whose cells have run empty owns nothing and holds what it reads, an
 }
 
 TEST("fewer particles than ranks, and all in one cell") {
-    test::over_ranks(
+    test::on_ranks(
         5,
         [] {
             for (const bool repeats : {false, true}) {
@@ -247,7 +248,7 @@ TEST("fewer particles than ranks, and all in one cell") {
 TEST(
     "cuts stay until a rank has more than its share by more than allowed; new ones leave no rank more than its share and a cell's "
     "particles") {
-    test::over_ranks(4, [] {
+    test::on_ranks(4, [] {
         Cloud cloud(2, false);
         cloud.scatter(4000, 6);
         State state(cloud, [](int i) { return i / 1000; });
@@ -273,7 +274,7 @@ TEST(
 }
 
 TEST("a position that is not finite on one rank fails all of them") {
-    test::over_ranks(3, [] {
+    test::on_ranks(3, [] {
         Cloud cloud(2, false);
         cloud.scatter(90, 7);
         State state(cloud, [](int i) { return i / 30; });

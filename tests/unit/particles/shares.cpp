@@ -109,7 +109,7 @@ struct Shared {
 
 std::vector<Cloud> clouds() { return {cloud(500, 2, false), cloud(500, 2, true), cloud(700, 3, false), cloud(700, 3, true)}; }
 
-TEST("over ranks own particles and images are those of one process, in its order, with as many neighbours") {
+TEST("in parallel own particles and images are those of one process, in its order, with as many neighbours") {
     for (const Cloud& c : clouds()) {
         const Shared shared(c, 3);
         int at = 0;
@@ -127,7 +127,7 @@ TEST("over ranks own particles and images are those of one process, in its order
     }
 }
 
-TEST("over ranks what one sends is what the other gets, in the same order, and all that a rank holds of others comes from their owners") {
+TEST("in parallel what one sends is what the other gets, in the same order, and all that a rank holds of others comes from their owners") {
     for (const Cloud& c : clouds()) {
         const Shared shared(c, 3);
         for (int r = 0; r < 3; ++r) {
@@ -150,7 +150,7 @@ TEST("over ranks what one sends is what the other gets, in the same order, and a
     }
 }
 
-TEST("over ranks where nothing was placed stands NaN") {
+TEST("in parallel where nothing was placed stands NaN") {
     const Shared shared(cloud(500, 2, true), 3);
     int unplaced = 0;
     for (const Rank& rank : shared.ranks)
@@ -162,7 +162,7 @@ TEST("over ranks where nothing was placed stands NaN") {
     EXPECT_GT(unplaced, 0);
 }
 
-TEST("over ranks the sort has cells of this rank and those that it reads, and no others, where axes repeat or not") {
+TEST("in parallel the sort has cells of this rank and those that it reads, and no others, where axes repeat or not") {
     const int threads_before = set_threads(2);
     for (const int dim : {2, 3})
         for (const bool repeats : {false, true}) {

@@ -1,5 +1,5 @@
-// Surfaces that ranks make together: point for point and triangle for triangle those of one process, wherever planes are cut and whoever
-// holds which particles.
+// Surfaces that ranks make together: point for point and triangle for triangle those of one process, wherever planes are cut and whichever
+// rank holds which particles.
 #include "core/slabs.hpp"
 #include "liquids.hpp"
 #include "support/forked_ranks.hpp"
@@ -53,7 +53,7 @@ void expect_together(const Liquid& liquid, const Options& options, const scene::
     const auto count = static_cast<std::size_t>(liquid.count());
     const SurfaceMesh whole = Reconstruction(options, scene).make(fields(0, count), 0);
     EXPECT_GT(whole.points.size(), 100U);
-    over_ranks(ranks, [&] {
+    on_ranks(ranks, [&] {
         const auto rank = static_cast<std::size_t>(slabs().rank()), others = static_cast<std::size_t>(ranks) - 1;
         FieldSet part = rank == 0 ? fields(0, 0) : fields(count * (rank - 1) / others, count * rank / others);
         part.particles_in_parts = true;
@@ -94,7 +94,7 @@ Liquid tank(int n, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<real> at(0.0, real(n));
     for (int i = 0; i < 3 * n; ++i) list.push_back({{at(random), at(random), at(random)}});
-    std::shuffle(list.begin(), list.end(), random);  // whoever holds them, they stand anywhere
+    std::shuffle(list.begin(), list.end(), random);  // on any rank, they stand anywhere
     Liquid all;
     all.domain = n;
     for (const Vec<3>& x : list) all.put(x);
@@ -185,7 +185,7 @@ struct Water {
     std::size_t plane(const std::array<int, 3>& count) const {
         return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(dim == 2 ? 1 : count[1]);
     }
-    /// What nobody has brought to this rank is not a number.
+    /// Stale ghosts of this rank are not numbers.
     void forget(const Cut& cut) {
         const int last = n[static_cast<std::size_t>(dim - 1)], rank = slabs().rank();
         const auto keep = [](std::vector<real>& list, std::size_t per, int begin, int end) {
@@ -229,7 +229,7 @@ TEST_IN_2D_AND_3D("water on a grid: from its level set and from its markers, of 
                 EXPECT_GT(whole.points.size(), 100U);
                 EXPECT_EQ(whole.velocity.size(), whole.points.size());
                 const Cut cut{at};
-                over_ranks(
+                on_ranks(
                     cut.ranks(),
                     [&] {
                         Water own = water;
@@ -267,7 +267,7 @@ TEST_IN_2D_AND_3D("the surface of markers without a velocity has that of the gri
 
 TEST("no liquid at all, and a position that is not a number: all ranks say the same") {
     const Liquid none = spray(10, 0, 1);
-    over_ranks(3, [&] {
+    on_ranks(3, [&] {
         FieldSet fields = none.fields();
         fields.particles_in_parts = true;
         Reconstruction maker(usual(Method::density), scene_of(10));

@@ -205,7 +205,7 @@ TEST("a liquid that is gone has no surface, and one that comes back has") {
     EXPECT_GT(made.make(ball(6).fields(), 0).corners.size(), 0U);
 }
 
-TEST("where a scene names no surface, nobody is there to make one, and nothing is allocated") {
+TEST("where a scene names no surface, none is made, and nothing is allocated") {
     const scene::Scene plain = scene_of(48);
     const long before = test::allocations;
     EXPECT_EQ(reconstruction_of(plain), nullptr);

@@ -1,4 +1,4 @@
-// What the fluid adds to the mass of bodies is learnt from its answers.
+// The added mass of bodies is estimated from the response of the fluid.
 #include "rigid/added_mass.hpp"
 
 #include "support/test.hpp"
@@ -90,7 +90,7 @@ TEST("a body that dips deeper keeps what is known of it, in units of its wet sur
     known.see(0, guess);
     known.learn(exact);
     known.see(0, deeper);
-    EXPECT_NEAR(known.of(0)[0][0], 0.9 * 8 + 0.1 * 4, 1e-14);  // a tenth of what was learnt is forgotten a step
+    EXPECT_NEAR(known.of(0)[0][0], 0.9 * 8 + 0.1 * 4, 1e-14);  // a step forgets a tenth of the estimate
     EXPECT_NEAR(known.of(0)[0][1], 0.9 * 2, 1e-14);
     known.see(0, {});
     EXPECT_EQ(known.of(0)[0][0], 0);

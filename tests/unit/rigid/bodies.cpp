@@ -37,7 +37,7 @@ TEST("mass and moments of inertia are those of the textbook") {
     EXPECT_NEAR(flat[0].mass_matrix()[2][2], 3.0 * (0.5 * 0.25 + 0.04), 1e-12);  // Steiner
 }
 
-TEST("a turn carries a box through space as far as its corners, a ball that glides not at all, one off its centre by as much as that") {
+TEST("a turn carries a box through space as far as its corners, a ball with free slip not at all, one off its centre by as much as that") {
     const auto speed = [](const std::string& shape) {
         Bodies<2> bodies(body_scene(2, "bodies = [ { density = 1.0, spin = [3.0], velocity = [0.5, 0.0], " + shape + " } ]"));
         return bodies[0].max_speed();
@@ -131,11 +131,11 @@ TEST_IN_2D_AND_3D("a checkpoint brings bodies back bit for bit") {
             : "bodies = [ { shape = \"box\", min = [1.0, 1.0, 1.0], max = [1.5, 1.7, 1.2], density = 2.0, velocity = [1.0, 3.0, "
               "0.5], spin = [0.3, 0.2, 2.0] } ]";
     Bodies<D> one(body_scene(D, line)), two(body_scene(D, line));
-    for (int i = 0; i < 7; ++i) one[0].fly(0.013, {});
+    for (int i = 0; i < 7; ++i) one[0].advance_free(0.013, {});
     Checkpoint checkpoint;
     one.save(checkpoint);
     two.restore(checkpoint);
-    for (int i = 0; i < 7; ++i) one[0].fly(0.013, {}), two[0].fly(0.013, {});
+    for (int i = 0; i < 7; ++i) one[0].advance_free(0.013, {}), two[0].advance_free(0.013, {});
     EXPECT_EQ(one[0].at, two[0].at);
     EXPECT_EQ(one[0].orientation, two[0].orientation);
     EXPECT_EQ(one[0].velocity, two[0].velocity);

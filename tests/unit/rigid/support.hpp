@@ -38,7 +38,7 @@ struct Dry {
         gravity[1] = -g;
     }
     void step(real dt) {
-        for (auto& body : bodies.all()) body.fly(dt, gravity);
+        for (auto& body : bodies.all()) body.advance_free(dt, gravity);
         bodies.place(solids);
         const std::size_t n = rigid::freedoms<D>;
         std::vector<real> v(n * bodies.count());

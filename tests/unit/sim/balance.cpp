@@ -45,10 +45,10 @@ BalanceOfRun balance(const Integrals& integrals, const std::string& more = "", i
     return taken.of_run(simulation);
 }
 
-Integrals volume(real from, real to, real ledger_from, real ledger_to) {
+Integrals volume(real from, real to, real balance_from, real balance_to) {
     return [=](real t) {
         return std::vector<Integral>{{"volume", "m^2", from + t * (to - from)},
-                                     {"volume_target", "m^2", ledger_from + t * (ledger_to - ledger_from)}};
+                                     {"volume_target", "m^2", balance_from + t * (balance_to - balance_from)}};
     };
 }
 

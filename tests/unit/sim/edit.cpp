@@ -1,4 +1,4 @@
-// A hand in a run between two steps: what is written is checked and made good, what comes and goes is counted, who looks on is called.
+// Edits of a run between two steps: what is written is checked and made good, what comes and goes is counted, who looks on is called.
 #include "core/slabs.hpp"
 #include "shared/device.hpp"
 #include "sim/registry.hpp"
@@ -114,7 +114,7 @@ TEST("smoke is as it was written, but where a source holds it and inside solids,
     EXPECT_EQ(smoke[10 * 16 + 10], 0);
 }
 
-TEST("over ranks nobody edits: that is refused by name before anything is touched, and nothing is editable") {
+TEST("in parallel edits are refused by name before anything is touched, and nothing is editable") {
     Simulation water = made(drop("mac_water")), particles = made(drop("pbf"));
     const std::string before = state_of(water), before_particles = state_of(particles);
     const std::vector<Vec<3>> at{{{0.5, 0.5, 0}}};
@@ -211,14 +211,14 @@ TEST("a drop that is given a velocity flies with it, markers and all, whatever c
 TEST("markers that come bring liquid with their velocity, and are counted; those that go take theirs along") {
     for (const char* transfer : {"grid", "flip", "apic"}) {
         Simulation simulation = made(drop("mac_water").set("scheme.transfer", transfer).set("time.dt", 0.002));
-        const real volume = integral(simulation, "volume"), ledger = integral(simulation, "volume_target");
+        const real volume = integral(simulation, "volume"), balance = integral(simulation, "volume_target");
         std::vector<Vec<3>> at, velocity;
         const real h = 1.0 / 32;  // four cells each way, full: four markers a cell
         for (int i = 0; i < 8; ++i)
             for (int j = 0; j < 8; ++j)
                 at.push_back({{4 * h + (i + 0.5) * h / 2, 24 * h + (j + 0.5) * h / 2, 0}}), velocity.push_back({{0, -1, 0}});
         simulation.add_particles("markers", at, velocity);
-        EXPECT_NEAR(integral(simulation, "volume_target"), ledger + 16 * h * h, 1e-14);
+        EXPECT_NEAR(integral(simulation, "volume_target"), balance + 16 * h * h, 1e-14);
         const real more = integral(simulation, "volume") - volume;  // within half a cell all around of what they stand for
         EXPECT_GT(more, 9 * h * h) << transfer;
         EXPECT_LT(more, 25 * h * h) << transfer;

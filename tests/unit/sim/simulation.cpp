@@ -2,8 +2,8 @@
 #include "sim/steadiness.hpp"
 
 #include "core/parallel.hpp"
-#include "sim/asked_times.hpp"
 #include "sim/registry.hpp"
+#include "sim/requested_times.hpp"
 #include "support/fake_solver.hpp"
 #include "support/test.hpp"
 
@@ -74,12 +74,12 @@ TEST("steps do not depend on frames: the same times, to the bit, with frames oft
 
 TEST("times of frames and probes are the doubles of decimal products: three times 0.1 is 0.3") {
     for (int k = 0; k < 2000; ++k) {
-        EXPECT_EQ(weir::sim::asked_time(0.1, k), k / 10.0);
-        EXPECT_EQ(weir::sim::asked_time(0.609, k), k * 609 / 1000.0);
-        EXPECT_EQ(weir::sim::asked_time(2.5e-5, k), k * 25 / 1e6);
+        EXPECT_EQ(weir::sim::requested_time(0.1, k), k / 10.0);
+        EXPECT_EQ(weir::sim::requested_time(0.609, k), k * 609 / 1000.0);
+        EXPECT_EQ(weir::sim::requested_time(2.5e-5, k), k * 25 / 1e6);
     }
     EXPECT_NE(3 * 0.1, 0.3);
-    EXPECT_EQ(weir::sim::asked_time(1.0 / 3, 5), 5 * (1.0 / 3));
+    EXPECT_EQ(weir::sim::requested_time(1.0 / 3, 5), 5 * (1.0 / 3));
     EXPECT_EQ(weir::sim::first_after(0.1, 0.3), 4);
     EXPECT_EQ(weir::sim::first_after(0.1, std::nextafter(0.3, 0)), 4);  // rounding is no difference
     EXPECT_EQ(weir::sim::first_after(0.1, 0.29), 3);
@@ -287,7 +287,7 @@ TEST("a small scene takes no more threads than it has work for, a large one all,
         EXPECT_EQ(next, seen.back());
         return seen;
     };
-    const int available = std::max(1, omp_get_max_threads()), grain = weir::ThreadsWorth::cells_a_thread / 8;
+    const int available = std::max(1, omp_get_max_threads()), grain = weir::ProblemSizeScope::cells_per_thread / 8;
     weir::set_threads(0);
     EXPECT_EQ(weir::threads(), available);
     EXPECT_EQ(threads_of(8), (std::vector<int>{1, 1}));

@@ -1,4 +1,4 @@
-// Water against the tables of cases/phase_diagram/data. They have eight digits or are rounded as told: 1e-6 where nothing else is said.
+// Water against the tables of cases/phase_diagram/data. They have eight digits or are rounded as stated: 1e-6 where nothing else is said.
 #include "core/error.hpp"
 #include "support/csv.hpp"
 #include "support/test.hpp"

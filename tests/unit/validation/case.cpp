@@ -35,7 +35,7 @@ void expect_refused(const std::string& text, const std::string& message) {
 
 }  // namespace
 
-TEST("a case is read with its sweep of the asked size, its changes and its claims") {
+TEST("a case is read with its sweep of the requested size, its changes and its claims") {
     const std::string text = head + R"(
 set = ["fluid.viscosity = 0.02"]
 sweep = { key = "grid.cells", values = [32, 64, 128], ci = [16, 32] }
@@ -95,7 +95,7 @@ TEST("values of 'over' name folders, at either size: what is no such name, or st
     EXPECT_EQ(refusal(over("values = ['-1.5e+3', 'cg_mic0']")).find("may have"), std::string::npos);
 }
 
-TEST("a claim without a reason, and a case that says not what it is blind to, are refused") {
+TEST("a claim without a reason, and a case that does not say what it does not cover, are refused") {
     expect_refused("question = \"q\"\nkind = \"exact\"\naccept = [ { metric = \"x\", at_most = 1, why = \"w\" } ]", "blind_to");
     expect_refused(head + "sweep = { key = \"grid.cells\", values = [1, 2] }\naccept = [ { metric = \"x\", at_most = 1 } ]", "why");
     expect_refused(head + "sweep = { key = \"grid.cells\", values = [1, 2] }\naccept = [ { metric = \"x\", at_most = 1, why = \" \" } ]",

@@ -86,7 +86,7 @@ TEST("the first step, which fills caches, is not timed where there is another") 
     EXPECT_EQ(t.steps, 3);
 }
 
-TEST("a study is read at the asked size; what is wrong in it is named") {
+TEST("a study is read at the requested size; what is wrong in it is named") {
     const Study full = parse_study(head + methods, "cost.toml", "cases/sample", Size::full);
     const Study ci = parse_study(head + methods, "cost.toml", "cases/sample", Size::ci);
     ASSERT_EQ(full.methods.size(), 2u);
@@ -163,7 +163,7 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
               "No configuration reaches e = 0.01; the nearest is fine with 0.1, for 33.3 ms of each 16.7 ms frame (0.5 times real time).");
 }
 
-TEST("where most methods gain nothing from a dearer setting the third sentence says so") {
+TEST("where most methods gain nothing from a more expensive setting the third sentence says so") {
     StudyResult result{.study = {.name = "s", .error = "e"}};
     for (const char* method : {"a", "b", "c"})
         for (const int setting : {1, 2}) {
@@ -242,7 +242,7 @@ TEST("a setting is measured, and its row says so, on the threads that it has wor
     const auto study = add(folder.path(), head + "[[methods]]\nname = \"own\"\nthreads = 3\n[[methods]]\nname = \"small\"\n");
     const int before = set_threads(0);
     const StudyResult result = measure_study(read_study(study, Size::ci), {.repeats = 1}, test::fake_kinds());
-    EXPECT_EQ(set_threads(before), 0) << "a study chooses for nobody after it";
+    EXPECT_EQ(set_threads(before), 0) << "a study sets it for no later one";
     ASSERT_EQ(result.points.size(), 2u);
     EXPECT_EQ(result.points[0].threads, 3);
     EXPECT_EQ(result.points[1].threads, 1) << "32 cells";
@@ -267,7 +267,7 @@ TEST("a figure joins the settings of a method in the study's order, however thei
     EXPECT_NE(figure.find("<title>a: 100, 1</title>"), std::string::npos);
 }
 
-TEST("a device is named with its settings, so that nobody takes a processor for a GPU") {
+TEST("a device is named with its settings, so that a processor is not taken for a GPU") {
     StudyResult result{.study = {.name = "s", .error = "e"}};
     result.points = {point("pbf-opencl", 0.1, 1)};
     result.points[0].setting = "64", result.points[0].device = "a processor (CPU, 2 units)", result.points[0].device_kind = "CPU";

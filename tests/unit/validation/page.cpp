@@ -101,7 +101,7 @@ TEST("a failed claim is named at the top, marked in its row, and its case is ope
     EXPECT_EQ(count(page, "<b class=\"no\">FAIL</b>"), 1u);
 }
 
-TEST("a bound that is asked for and not reached stands in a table of its own, is not counted and does not fail its case") {
+TEST("an open target stands in a table of its own, is not counted and does not fail its case") {
     const weir::test::TemporaryFolder folder;
     json open = claim(false, 3, 2, "<= 2"), old = claim(true, 1, 2, "<= 2");
     open["not_reached"] = "the floor is rough";

@@ -89,7 +89,7 @@ TEST("a claim that does not hold gives exit code 1 and stands in the verdicts as
     EXPECT_TRUE(verdicts[2]["pass"].get<bool>());
 }
 
-TEST("a bound that is asked for and not reached is listed with its figure and claims nothing; once it is reached the list is wrong") {
+TEST("an open target is listed with its value and claims nothing; once it is met the list is wrong") {
     const Folder folder;
     const std::string held = "{ metric = \"velocity.max\", at_most = 10, why = \"w\" }";
     const auto open =
@@ -211,12 +211,12 @@ TEST("unknown names, a bad case file, a bad scene and an unknown reference are r
     const std::string claims = "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n";
     const auto file = folder.add("file", head + "accpet = []\n");
     const auto scene = folder.add("scene", head + claims, "colour = 3\n");
-    const auto reference = folder.add("reference", head + "reference = \"nobody_knows\"\n" + claims);
+    const auto reference = folder.add("reference", head + "reference = \"unlisted\"\n" + claims);
     try {
         run(folder, {file, scene, reference});
         FAIL() << "accepted";
     } catch (const BadInput& wrong) {
-        for (const char* part : {"accpet", "colour", "unknown reference \"nobody_knows\""})
+        for (const char* part : {"accpet", "colour", "unknown reference \"unlisted\""})
             EXPECT_NE(std::string(wrong.what()).find(part), std::string::npos) << part << "\n" << wrong.what();
     }
     EXPECT_FALSE(fs::exists(folder.path / "out"));
@@ -269,7 +269,7 @@ accept = [
     EXPECT_EQ(result.variants[0].runs[0].measured.count("velocity.max"), 1u);
 }
 
-TEST("a run that is cut off and fails, or asks for what is not there, is told by the exit code") {
+TEST("a run that is cut off and fails, or asks for what is not there, is reported by the exit code") {
     const Folder folder;
     const auto broken =
         folder.add("broken", head + "accept = [ { metric = \"velocity.max\", at_most = 10, why = \"w\" } ]\n", "fail_at = 2\n");

@@ -34,7 +34,7 @@ TEST("a price is read exactly where the error is a power of it, wherever the set
 }
 
 // A threshold between two settings made of this anything from 1 to 16: whichever setting came after it.
-TEST("a method that needs four times the time at every error is four times as dear at each, whatever settings were measured") {
+TEST("a method that needs four times the time at every error is four times as expensive at each, whatever settings were measured") {
     const Envelope a = power("a", 0.4, 0.5, {1, 4, 16, 64}), b = power("b", 0.8, 0.5, {3, 11, 47, 200, 900});
     for (const real error : {0.35, 0.21, 0.2, 0.19, 0.101, 0.1, 0.06}) {
         const Ranking r = rank({b, a}, error, 0);
@@ -81,8 +81,8 @@ TEST("methods whose errors differ by less than the reference is known to are not
     EXPECT_NEAR(rank({a, b}, 0.1, 0.0).reached[1].times, 1.21, 1e-12);
     EXPECT_FALSE(rank({a, b}, 0.1, 0.0099).reached[1].alike);
     EXPECT_TRUE(rank({a, b}, 0.1, 0.0101).reached[1].alike);
-    const Envelope dear = power("dear", 0.4, 0.5, {20, 60});
-    EXPECT_FALSE(rank({a, dear}, 0.1, 0.0101).reached[1].alike) << "it has no setting that is as cheap";
+    const Envelope expensive = power("expensive", 0.4, 0.5, {20, 60});
+    EXPECT_FALSE(rank({a, expensive}, 0.1, 0.0101).reached[1].alike) << "it has no setting that is as cheap";
     StudyResult result{.study = {.name = "s", .error = "e", .good_enough = 0.1, .known_to = 0.02, .known_why = "w"}};
     for (const Envelope* curve : {&a, &b})
         for (const auto& p : curve->points) result.points.push_back(point(curve->label, p.error, p.price));

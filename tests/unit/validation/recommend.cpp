@@ -66,7 +66,7 @@ TEST("a budget alone buys the most accurate, an error alone is had as cheaply as
     EXPECT_EQ(taken({.error = 0.02}).error, 0.01);
     EXPECT_EQ(taken({.error = 0.2}).error, 0.1);
     EXPECT_EQ(taken({.seconds = 1, .known_to = 0.06}).error, 0.05) << "0.05 and 0.01 are alike to it, and the first is cheaper";
-    EXPECT_EQ(taken({.error = 0.001, .known_to = 0.06}).error, 0.05) << "nobody can tell that 0.05 is not as good as that";
+    EXPECT_EQ(taken({.error = 0.001, .known_to = 0.06}).error, 0.05) << "0.05 cannot be distinguished from that";
 }
 
 TEST("what can be recommended is what recommend() names for some budget and some error, and nothing else") {

@@ -1,4 +1,4 @@
-// From stability.toml to the limit: the bisection, the invariants, the floor, on a solver whose numbers are known.
+// From stability.toml to the limit: the bisection, the invariants, the guaranteed range, on a solver whose numbers are known.
 #include "validation/stability/command.hpp"
 
 #include "core/error.hpp"
@@ -22,8 +22,8 @@ namespace {
 
 /// The fake solver's step is at most 0.03 s; `stall_at` is the step after which its advised step is nothing.
 const std::string bare_axis = "[[axes]]\nname = \"end\"\nkey = \"time.end\"\nlow = 0.05\nhigh = 2\nhard_because = \"it is long\"\n";
-const std::string proof = "proof = [{ quantity = \"mass\", at_least = 1, why = \"there is something\" }]\n";
-const std::string axis = bare_axis + "kind = \"limit\"\n" + proof;
+const std::string mass_precondition = "proof = [{ quantity = \"mass\", at_least = 1, why = \"there is something\" }]\n";
+const std::string axis = bare_axis + "kind = \"limit\"\n" + mass_precondition;
 const std::string stalls = "question = \"q\"\nset = [\"stall_at = 10\"]\n";
 
 fs::path add(const fs::path& root, const std::string& text) {
@@ -86,7 +86,7 @@ TEST("where runs are nested one run at the end of the axis is enough") {
     EXPECT_LT(*found.first_unstable / *found.last_stable, 1.1);
 }
 
-TEST("what is watched of some methods only is not asked of others") {
+TEST("what is watched of some methods only is not required of others") {
     const std::string text =
         "question = \"q\"\nwatch = [{ series = \"mass\", at_most = 2, why = \"w\", methods = [\"a\"] }]\n"
         "[[methods]]\nname = \"a\"\n[[methods]]\nname = \"b\"\n" +
@@ -106,9 +106,10 @@ TEST("an axis may set several keys by powers of its value; what cannot be read i
     EXPECT_EQ(pushed.overrides[3].key, "time.end");
     stress.base.overrides = {{"grid.size", "[<half>, 1]"}};
     EXPECT_THROW(pushed_to(stress, 3), BadInput);
-    EXPECT_NE(refusal("question = \"q\"\n[[axes]]\nname = \"n\"\nlow = 1\nhigh = 2\nhard_because = \"h\"\nkind = \"limit\"\n" + proof)
-                  .find("an axis needs a \"key\""),
-              std::string::npos);
+    EXPECT_NE(
+        refusal("question = \"q\"\n[[axes]]\nname = \"n\"\nlow = 1\nhigh = 2\nhard_because = \"h\"\nkind = \"limit\"\n" + mass_precondition)
+            .find("an axis needs a \"key\""),
+        std::string::npos);
 }
 
 TEST("an axis may be for some methods only and have steps of its own; a method that there is not is named") {
@@ -229,7 +230,7 @@ TEST("each watch of hard_melting sees its own number leave its bound") {
                                      [](const Stress& s) { return s.method == "mac" && s.name == "latent heat"; });
     ASSERT_NE(of_mac, study.stresses.end());
     Stress stress = *of_mac;
-    stress.steps = 2, stress.proof.clear();
+    stress.steps = 2, stress.preconditions.clear();
     const auto broke = [&](const std::string& name, real by) {
         auto kind = flow::kind();
         kind.make = [&, name, by](const scene::Scene& scene) { return std::make_unique<OffByOne>(scene, name, by); };
@@ -262,12 +263,12 @@ TEST("what is wrong in stability.toml is named") {
     EXPECT_NE(refusal("question = \"q\"\n").find("axes"), std::string::npos);
 }
 
-TEST("the command writes limits and page; a floor that does not hold is exit code 1, in both modes") {
+TEST("the command writes limits and page; a guaranteed range that does not pass is exit code 1, in both modes") {
     const test::TemporaryFolder folder;
-    const auto run = [&](real floor, bool floors) {
+    const auto run = [&](real floor, bool guaranteed_only) {
         const auto study = add(folder.path(), stalls + axis + "floor = " + std::to_string(floor) + "\nfloor_why = \"w\"\n");
         StabilityOptions options;
-        options.names = {study.string()}, options.floors = floors, options.quiet = true;
+        options.names = {study.string()}, options.guaranteed_only = guaranteed_only, options.quiet = true;
         options.out = folder.path() / "out", options.publish = folder.path() / "page";
         return stability_command(options, test::fake_kinds());
     };
@@ -283,10 +284,10 @@ TEST("the command writes limits and page; a floor that does not hold is exit cod
     EXPECT_TRUE(fs::exists(folder.path() / "out/study.json"));
 }
 
-TEST("what is asked for beyond a floor is listed with its reason while it is not reached, and is an error once it holds") {
+TEST("an open target beyond the guaranteed range is listed with its reason, and is an error once it is met") {
     const test::TemporaryFolder folder;
-    const auto run = [&](real asked) {
-        const auto study = add(folder.path(), stalls + axis + "floor = 0.1\nfloor_why = \"w\"\nasked = " + std::to_string(asked) +
+    const auto run = [&](real open_target) {
+        const auto study = add(folder.path(), stalls + axis + "floor = 0.1\nfloor_why = \"w\"\nasked = " + std::to_string(open_target) +
                                                   "\nnot_reached = \"its own clock stands still\"\n");
         StabilityOptions options;
         options.names = {study.string()}, options.quiet = true;
@@ -304,13 +305,13 @@ TEST("what is asked for beyond a floor is listed with its reason while it is not
 namespace {
 
 /// An axis over a real solver: a film that gets thinner than what the solver can hold.
-fs::path film(const fs::path& root, const std::string& solver, const std::string& proofs) {
+fs::path film(const fs::path& root, const std::string& solver, const std::string& preconditions) {
     const fs::path folder = root / "film";
     fs::create_directories(folder);
     std::ofstream(folder / "stability.toml")
         << "question = \"q\"\nsteps = 3\n[[axes]]\nname = \"film\"\nlow = 1\nhigh = 4\nhard_because = \"h\"\nkind = \"limit\"\n"
         << "set = [\"liquid = [{ shape = \\\"box\\\", min = [0, 0], max = [1, <0.5^-1>] }]\"]\n"
-        << proofs;
+        << preconditions;
     std::ofstream(folder / "scene.toml") << "solver = \"" << solver
                                          << "\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 0.1, max_dt = 0.01 }\n";
     return folder;
@@ -327,18 +328,18 @@ std::string study_error(const Stress& stress, real value) {
 
 }  // namespace
 
-TEST("an axis must prove its hardship and name its kind; a reason for not being reached belongs to a limit") {
+TEST("an axis must give its preconditions and name its kind; a reason for not being reached belongs to a limit") {
     EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"limit\"\n").find("proof"), std::string::npos);
-    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + proof).find("kind"), std::string::npos);
-    EXPECT_NE(
-        refusal("question = \"q\"\n" + bare_axis + "kind = \"units\"\n" + proof + "unbroken = [{ why = \"w\" }]\n").find("only an axis"),
-        std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + mass_precondition).find("kind"), std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"units\"\n" + mass_precondition + "unbroken = [{ why = \"w\" }]\n")
+                  .find("only an axis"),
+              std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + bare_axis + "kind = \"limit\"\nproof = [{ quantity = \"mass\", why = \"w\" }]\n")
                   .find("needs one of: at_least"),
               std::string::npos);
 }
 
-TEST("a rung without its hardship is an error of the study, not a limit that was not reached") {
+TEST("a value without its preconditions is an error of the study, not a limit that was not reached") {
     const test::TemporaryFolder folder;
     const std::string wet = "proof = [{ quantity = \"wet_cells\", at_least = 25, why = \"four layers\" }]\n";
     for (const std::string solver : {"mac_water", "pbf", "sph"}) {
@@ -362,9 +363,9 @@ TEST("an empty tank is refused by the solver, which breaks the axis") {
     }
 }
 
-TEST("proofs are counted: film, bodies, pockets, gap, aspect, solids; of the start, the run and its end") {
+TEST("preconditions are measured: film, bodies, pockets, gap, aspect, solids; of the start, the run and its end") {
     const test::TemporaryFolder folder;
-    const auto shown = [&](const std::string& solver, const std::string& more) {
+    const auto measured = [&](const std::string& solver, const std::string& more) {
         const std::string all =
             "proof = [{ quantity = \"film\", at_least = 0, why = \"w\" }, { quantity = \"bodies\", at_least = 0, why = \"w\" }, "
             "{ quantity = \"pockets\", at_least = 0, why = \"w\" }, { quantity = \"gap\", at_least = 0, why = \"w\" }, "
@@ -373,7 +374,7 @@ TEST("proofs are counted: film, bodies, pockets, gap, aspect, solids; of the sta
             "{ quantity = \"steps\", when = \"end\", at_least = 0, why = \"w\" }]\n";
         Stress stress = only(film(folder.path(), solver, all));
         stress.base.overrides.push_back({"solids", more});
-        std::vector<Shown> list;
+        std::vector<MeasuredValue> list;
         EXPECT_FALSE(push(stress, 2, sim::registry(), &list));
         return list;
     };
@@ -381,7 +382,7 @@ TEST("proofs are counted: film, bodies, pockets, gap, aspect, solids; of the sta
     const std::string wall =
         "[{ shape = \"box\", min = [0.5, 0.125], max = [0.625, 1], motion = { kind = \"constant\", velocity = [0, 0.01] } }]";
     for (const std::string solver : {"mac_water", "pbf"}) {
-        const auto list = shown(solver, wall);
+        const auto list = measured(solver, wall);
         ASSERT_EQ(list.size(), 9u) << solver;
         const real layers = 15.0 / 8;  // what would be inside the wall is left out
         EXPECT_NEAR(list[0].value, layers, 0.05) << solver << " film";
@@ -407,6 +408,6 @@ TEST("a limit that ends unbroken without a reason, or breaks in spite of one, an
     EXPECT_EQ(limit.doubt(), "");
     limit.stress.kind = AxisKind::units;
     EXPECT_NE(limit.doubt(), "");
-    limit.climbed = false;  // a floor alone says nothing of the axis
+    limit.climbed = false;  // a guaranteed range alone does not measure the axis
     EXPECT_EQ(limit.doubt(), "");
 }

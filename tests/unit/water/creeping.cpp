@@ -7,7 +7,7 @@ namespace weir::water {
 
 namespace {
 
-/// A block twice as wide as high (in 3D as long, too) on a floor it sticks to: 10 cm high in cells of 6.25 mm, or of 12.5 mm in 3D.
+/// A block twice as wide as high (in 3D as long, too) on a no-slip floor: 10 cm high in cells of 6.25 mm, or of 12.5 mm in 3D.
 template <int D>
 std::string block(real nu, const std::string& scheme, const std::string& transfer, real shift = 0) {
     const auto at = [&](real x) { return fmt::format("{:.17g}", x); };
@@ -37,7 +37,7 @@ real fallen(const std::string& scene, real time, real max_dt = infinity) {
 
 }  // namespace
 
-// 5% is what was asked for. The surface moves by the velocity of before, so that a step's lag is left of 150 ms: 3% where dt is 14 ms and
+// 5% is what was asked for. The surface moves by the previous velocity, so that a step's lag is left of 150 ms: 3% where dt is 14 ms and
 // begins small. Were the weight to fall freely within a step, and friction to act on the next, the default step's block would fall 13 times
 // as far at ν = 1 and twice as far at ν = 0.1.
 TEST("a thick block slumps as far by the default step as by small ones") {
@@ -88,7 +88,7 @@ TEST("a creeping block takes one solve a step, once it creeps") {
     Water<2> water(test::water_scene(block<2>(1, "implicit", "flip")));
     while (water.time() < 0.03) water.step(water.advised_dt());
     int turns = 0;
-    for (int i = 0; i < 8; ++i) turns += water.step(water.advised_dt()).viscous_turns;
+    for (int i = 0; i < 8; ++i) turns += water.step(water.advised_dt()).viscous_coupling_iterations;
     EXPECT_LE(turns, 1);
 }
 

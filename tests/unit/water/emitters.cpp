@@ -30,7 +30,7 @@ std::string pool(real depth) {
            ", max = " + list({"1.0", fmt::format("{}", depth), "1.0"}, D) + " } ]\n";
 }
 
-/// Largest speed of the liquid's faces, in the first 0.1 s and afterwards, and what the ledger of volume says at the end.
+/// Largest speed of the liquid's faces, in the first 0.1 s and afterwards, and what the balance of volume says at the end.
 struct Poured {
     real at_start = 0, fastest = 0, volume = 0;
 };

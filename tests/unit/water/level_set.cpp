@@ -144,13 +144,13 @@ TEST_IN_2D_AND_3D("a marker that leaves the liquid takes a drop with it; one tha
     markers.add(x, Vec<D>{});
     markers.sort(s.frame);
     const auto before = s.level_set.phi;
-    EXPECT_EQ(s.level_set.rescue_escaped(markers), 0u);
+    EXPECT_EQ(s.level_set.correct_with_particles(markers), 0u);
     EXPECT_TRUE(std::equal(before.values().begin(), before.values().end(), s.level_set.phi.values().begin()));
     Index<D> up = Index<D>::constant(4);
     up[1] = 12;
     markers.set_position(0, s.frame.centre(up));
     markers.sort(s.frame);
-    EXPECT_EQ(s.level_set.rescue_escaped(markers), 1u);
+    EXPECT_EQ(s.level_set.correct_with_particles(markers), 1u);
     EXPECT_NEAR(s.level_set.phi(up), -(D == 2 ? 0.28 : 0.31) / 16, 1e-15);
     s.level_set.redistance();
     EXPECT_LT(s.level_set.phi(up), 0);
@@ -168,7 +168,7 @@ TEST_IN_2D_AND_3D("whether a marker has escaped does not depend on other markers
         markers.add(x, Vec<D>{});
         markers.add(x + 0.05 * s.frame.h_min() * Vec<D>::unit(1), Vec<D>{});
         markers.sort(s.frame);
-        EXPECT_EQ(s.level_set.rescue_escaped(markers), 2u) << "cells " << flat << " times as wide as high";
+        EXPECT_EQ(s.level_set.correct_with_particles(markers), 2u) << "cells " << flat << " times as wide as high";
     }
 }
 

@@ -72,7 +72,8 @@ TEST_IN_2D_AND_3D("a collapse keeps its volume to 1% under volume control, and g
 }
 
 // After 120 steps the column has met the far wall and broken into drops, from which the level set takes more than it gives back.
-TEST_IN_2D_AND_3D("volume control is an effect: named it holds the ledger's volume, and tells what it did; else it is not there") {
+TEST_IN_2D_AND_3D(
+    "volume control is an effect: named it keeps the volume of the balance and reports its corrections; otherwise it is absent") {
     const auto broken = [](const std::vector<scene::Override>& changes) {
         auto water = std::make_unique<water::Water<D>>(water_scene(dam_break<D>(), changes));
         run(*water, 120);

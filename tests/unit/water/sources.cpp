@@ -1,4 +1,4 @@
-// Emitters and open sides: what is poured, what drains, and the ledger of volume that the surface is held to.
+// Emitters and open sides: what is poured, what drains, and the balance of volume that the surface is held to.
 #include "support.hpp"
 
 #include <cmath>
@@ -36,7 +36,7 @@ real poured(real r, real t) {
 
 }  // namespace
 
-TEST_IN_2D_AND_3D("an emitter fills, an open side drains, and surface and markers keep to the ledger") {
+TEST_IN_2D_AND_3D("an emitter fills, an open side drains, and surface and markers agree with the volume balance") {
     const real start = (D == 2 ? 1.5 : 1.5 * 1.0) * 0.1, most = start + poured<D>(0.1, 1.0);
     for (const std::string& transfer : D == 2 ? std::vector<std::string>{"flip", "apic"} : std::vector<std::string>{"flip"}) {
         const std::string layer =
@@ -45,15 +45,15 @@ TEST_IN_2D_AND_3D("an emitter fills, an open side drains, and surface and marker
         real last = most, worst = 0;
         while (water.time() < 3) {
             water.step(water.advised_dt());
-            const real ledger = integral(water, "volume_target");
-            ASSERT_GT(ledger, 0) << transfer;
-            ASSERT_LT(ledger, 1.02 * most) << transfer;
+            const real balance = integral(water, "volume_target");
+            ASSERT_GT(balance, 0) << transfer;
+            ASSERT_LT(balance, 1.02 * most) << transfer;
             if (water.time() > 1.1) {
-                ASSERT_LE(ledger, last) << transfer << ": nothing pours any more";
-                last = ledger;
+                ASSERT_LE(balance, last) << transfer << ": nothing pours any more";
+                last = balance;
             }
             const real airborne = water.markers().volume * static_cast<real>(water.surface().count_airborne(water.markers()));
-            worst = std::max(worst, std::abs(integral(water, "surface_volume") + airborne - ledger));
+            worst = std::max(worst, std::abs(integral(water, "surface_volume") + airborne - balance));
         }
         EXPECT_LT(worst, 0.05 * most) << transfer << ": volume control moves the surface by 2% of a cell a step";
         EXPECT_LT(last, 0.9 * start) << transfer << ": the layer flows out";

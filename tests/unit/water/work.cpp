@@ -1,5 +1,5 @@
 // What a step takes of each plane, and the cuts that follow from it.
-#include "core/cut_by_work.hpp"
+#include "core/load_balance.hpp"
 #include "support.hpp"
 
 #include <numeric>
@@ -26,20 +26,20 @@ std::int64_t sum(std::span<const std::int64_t> work) { return std::accumulate(wo
 }  // namespace
 
 // Cuts are at multiples of 8 planes, each at the one nearest to where an even share ends: off by half of such a slab at either end of a
-// rank's planes, so that nobody has more than the mean and the heaviest slab.
+// rank's planes, so that no rank has more than the mean and the heaviest slab.
 TEST(
-    "liquid in one end of a tank: whoever has most to do has at most the heaviest 8 planes more than the mean; by planes alone one has "
+    "liquid in one end of a tank: the rank with most work has at most the heaviest 8 planes more than the mean; by planes alone one has "
     "all") {
     const auto work = water::work_of_planes(water_scene(one_end("0.48")));
     ASSERT_EQ(work.size(), 96u);
     std::int64_t heaviest = 0;
     for (std::size_t at = 0; at < 96; at += 8) heaviest = std::max(heaviest, sum(std::span(work).subspan(at, 8)));
     for (const int ranks : {2, 3, 4}) {
-        const Cut cut = cut_by_work(work, ranks);
+        const Cut cut = load_balanced_cut(work, ranks);
         EXPECT_LE(largest_share(work, cut), sum(work) / ranks + heaviest) << ranks;
         for (int r = 1; r < ranks; ++r) EXPECT_EQ(cut.begin(r) % 8, 0) << ranks;
     }
-    EXPECT_EQ(cut_by_work(work, 2).at, (std::vector<int>{0, 24, 96}));  // 6 slabs of liquid: 3 for each
+    EXPECT_EQ(load_balanced_cut(work, 2).at, (std::vector<int>{0, 24, 96}));  // 6 slabs of liquid: 3 for each
     // empty planes are not free, but a wet cell takes 28 times as much, and two thirds of the cells of 48 planes are wet
     EXPECT_GT(static_cast<double>(largest_share(work, cut_of(96, 2))), 0.9 * static_cast<double>(sum(work)));
 }
@@ -54,16 +54,16 @@ TEST("what the planes of a scene take is what those of the state take with which
     const auto told = water::work_of_planes(scene), found = water::work_of_planes(scene, &state);
     ASSERT_EQ(told.size(), found.size());
     EXPECT_NEAR(static_cast<double>(sum(told)) / static_cast<double>(sum(found)), 1, 0.05);
-    for (const int ranks : {2, 3, 4}) EXPECT_EQ(cut_by_work(told, ranks), cut_by_work(found, ranks)) << ranks;
+    for (const int ranks : {2, 3, 4}) EXPECT_EQ(load_balanced_cut(told, ranks), load_balanced_cut(found, ranks)) << ranks;
 }
 
 TEST("a tank that is wet along all of its length is cut into as many planes for each") {
     const auto work = water::work_of_planes(water_scene(one_end("0.96"), {{"solids", "[]"}}));
-    for (const int ranks : {2, 3, 4, 6}) EXPECT_EQ(cut_by_work(work, ranks), cut_of(96, ranks)) << ranks;
+    for (const int ranks : {2, 3, 4, 6}) EXPECT_EQ(load_balanced_cut(work, ranks), cut_of(96, ranks)) << ranks;
 }
 
 // An emitter fills the tank later: nothing is known of where the liquid will be.
 TEST("a tank without liquid at the start is cut into as many planes for each") {
     const auto work = water::work_of_planes(water_scene(one_end("0.48"), {{"liquid", "[]"}}));
-    for (const int ranks : {2, 3, 4}) EXPECT_EQ(cut_by_work(work, ranks), cut_of(96, ranks)) << ranks;
+    for (const int ranks : {2, 3, 4}) EXPECT_EQ(load_balanced_cut(work, ranks), cut_of(96, ranks)) << ranks;
 }

@@ -1,0 +1,229 @@
+#include "validation/cost/parallel_estimate.hpp"
+
+#include "core/error.hpp"
+#include "core/slabs.hpp"
+#include "sim/shares.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace weir::validation {
+namespace {
+
+constexpr int tries = 5, round_trips = 2000;
+constexpr std::size_t large_message = std::size_t{1} << 22;
+constexpr int most_ranks = 1024;  // of the table of weak scaling
+constexpr int most_listed = 64;   // each by itself
+
+/// What two processes share: whose turn it is, and a message.
+struct Meeting {
+    std::atomic<int> turn{0};
+    unsigned char message[large_message];
+};
+
+/// Gives the turn back and waits for it again.
+void pass_turn(Meeting& meeting, int self) {
+    meeting.turn.store(1 - self, std::memory_order_release);
+    while (meeting.turn.load(std::memory_order_acquire) != self) sched_yield();
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// The other process: it answers each message, and takes the large ones in.
+[[noreturn]] void answer(Meeting& meeting) {
+    std::vector<unsigned char> taken(large_message);
+    while (meeting.turn.load(std::memory_order_acquire) != 1) sched_yield();
+    for (int i = 0; i < tries * (round_trips + 1); ++i) {
+        if (i % (round_trips + 1) == round_trips) std::memcpy(taken.data(), meeting.message, large_message);
+        if (i + 1 == tries * (round_trips + 1)) break;
+        pass_turn(meeting, 1);
+    }
+    meeting.turn.store(0, std::memory_order_release);
+    _exit(0);
+}
+
+/// Scope in which slabs() are those of a rank that exchanges nothing: for code that reads the number of ranks.
+class DryRun {
+public:
+    DryRun(int rank, int ranks) { set_slabs(std::make_unique<Slabs>(rank, ranks)); }
+    ~DryRun() { set_slabs(nullptr); }
+    DryRun(const DryRun&) = delete;
+    DryRun& operator=(const DryRun&) = delete;
+};
+
+int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.root().numbers("grid.cells").back()); }
+
+/// One that has two neighbours and as many planes as any other: of a model in which all have as much to do.
+RankOf one_between(const scene::Scene& scene, const scene::SolverKind& kind, int ranks) {
+    RankOf of{.rank = ranks / 2, .ranks = ranks};
+    if (kind.shared == scene::Shared::by_planes) of.cut = kind.cut ? kind.cut(scene, ranks) : cut_of(planes_of_scene(scene), ranks);
+    return of;
+}
+
+/// An equal part, and the ghost particles within a kernel's reach of the subdomain boundaries, over all planes.
+double part_of_particles(const scene::Scene& scene, int rank, int ranks) {
+    const double cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
+    return std::min(1.0, 1.0 / ranks + cuts * scene.number("scheme.support") / planes_of_scene(scene));
+}
+
+/// The scene with so many planes for each of so many ranks, in a domain that is as much longer.
+scene::Scene with_planes(const scene::Scene& scene, int planes, const std::vector<scene::SolverSchema>& schemas) {
+    auto cells = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size");
+    size.back() *= planes / cells.back();
+    cells.back() = planes;
+    auto overrides = scene.overrides();
+    overrides.push_back({"grid.cells", fmt::format("[{}]", fmt::join(cells, ", "))});
+    overrides.push_back({"grid.size", fmt::format("[{}]", fmt::join(size, ", "))});
+    return scene::parse(scene.source(), scene.file(), schemas, overrides);
+}
+
+std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, const ParallelEstimate& o,
+                                    double particles) {
+    const auto& kind = sim::kind_named(scene.solver(), kinds);
+    const std::vector<scene::SolverSchema> schemas = scene::schemas_of(kinds);
+    const double each = particles > 0 ? particles / o.ranks : static_cast<double>(planes_of_scene(scene)) / o.ranks;
+    double cells = 1;
+    for (const double n : scene.root().numbers("grid.cells")) cells *= n;
+    const double units = particles > 0 ? each : cells / planes_of_scene(scene) * each;
+    std::vector<ModelStep> list{{1, units * o.seconds_each, 0}};
+    for (int ranks = 2; ranks <= most_ranks; ranks *= 2) try {
+            const scene::Scene other = particles > 0 ? scene : with_planes(scene, static_cast<int>(std::lround(each * ranks)), schemas);
+            StepShape shape = o.shape;
+            shape.particles = each * ranks;
+            const StepTraffic sent = kind.sends(other, one_between(other, kind, ranks), shape);
+            list.push_back(model_step(units * o.seconds_each, sent, ranks, o.link));
+        } catch (const BadInput&) {  // in a shorter domain there may be no place for an emitter
+        }
+    return list;
+}
+
+}  // namespace
+
+Link measure_link() {
+    void* shared = mmap(nullptr, sizeof(Meeting), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) throw OutputError("cannot measure the message latency: no shared memory");
+    auto& meeting = *new (shared) Meeting;
+    const pid_t other = fork();
+    if (other < 0) throw OutputError("cannot measure the message latency: no second process could be started");
+    if (other == 0) answer(meeting);
+    Link link{infinity, 0, "through the shared memory of this machine, measured now"};
+    std::vector<unsigned char> sent(large_message, 1);
+    for (int i = 0; i < tries; ++i) {
+        double start = now();
+        for (int k = 0; k < round_trips; ++k) pass_turn(meeting, 0);
+        link.latency = std::min(link.latency, (now() - start) / (2 * round_trips));
+        start = now();
+        std::memcpy(meeting.message, sent.data(), large_message);
+        pass_turn(meeting, 0);
+        link.bandwidth = std::max(link.bandwidth, static_cast<double>(large_message) / (now() - start));
+    }
+    waitpid(other, nullptr, 0);
+    munmap(shared, sizeof(Meeting));
+    return link;
+}
+
+ModelStep model_step(double computing, const StepTraffic& sent, int ranks, const Link& link) {
+    if (ranks == 1) return {1, computing, 0};
+    const double hops = std::ceil(std::log2(ranks));
+    const auto all = static_cast<double>(sent.everywhere.messages), beside = static_cast<double>(sent.rounds) - all;
+    const double rounds = beside + hops * all;
+    return {ranks, computing, rounds * link.latency + (static_cast<double>(sent.beside.bytes) + sent.received) / link.bandwidth};
+}
+
+ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstimate& f, int ranks, const std::optional<Link>& link,
+                                      const std::vector<scene::SolverKind>& kinds) {
+    sim::require_ranks(scene, ranks, kinds);
+    const auto& kind = sim::kind_named(scene.solver(), kinds);
+    const sim::Shares shares = sim::shares_of(scene, ranks, kind);
+    ParallelEstimate o{.ranks = ranks,
+                       .nothing_shared = ranks > 1 && shares.nothing_shared(),
+                       .replicated_work = shares.replicated_work,
+                       .link = link ? *link : measure_link(),
+                       .seconds_each = 1e-3 * f.ms / f.count};
+    o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
+               .cells_crossed = std::max(1, static_cast<int>(std::ceil(f.most_cfl))),
+               .particles = f.particles ? f.count : 0,
+               .viscous_iterations = static_cast<int>(std::lround(f.viscous_iterations))};
+    o.cut = shares.cut;
+    {
+        const DryRun several(0, ranks);
+        o.own_part =
+            ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene, o.cut)));
+    }
+    const std::vector<double> parts = o.own_part && !o.cut.empty() ? sim::parts_of_planes(scene, kinds) : std::vector<double>{};
+    for (int rank = 0; rank < ranks; ++rank) {
+        const RankOf of{.cut = o.cut, .rank = rank, .ranks = ranks};
+        o.bytes.push_back(!o.own_part       ? f.held.bytes
+                          : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank, parts)
+                                            : f.held.bytes * part_of_particles(scene, rank, ranks));
+        o.surface_bytes.push_back(sim::surface_bytes_of_rank(scene, f.held, rank, ranks));
+        if (ranks > 1 && kind.sends) o.sent.push_back(kind.sends(scene, of, o.shape));
+    }
+    if (!o.sent.empty() && !o.nothing_shared) o.weak = weak_scaling(scene, kinds, o, o.shape.particles);
+    return o;
+}
+
+namespace {
+
+std::string constants_text(const ParallelEstimate& o, const CostEstimate& f) {
+    return fmt::format("  constants: {:.3g} ns per {} and step, from the rates above; {:.3g} us per message and {:.3g} GB/s {}\n",
+                       1e9 * o.seconds_each, f.particles ? "particle" : "cell", 1e6 * o.link.latency, 1e-9 * o.link.bandwidth,
+                       o.link.source);
+}
+
+std::string weak_text(const ParallelEstimate& o, const CostEstimate& f) {
+    std::string s = f.particles ? "weak scaling, a model with the same number of particles per rank\n"
+                                : "weak scaling, a model with the same number of planes per rank\n";
+    for (const ModelStep& step : o.weak)
+        s += fmt::format("  {:5} ranks  {:10.4g} ms computing  {:10.4g} ms communication  {:5.1f}%\n", step.ranks, 1e3 * step.computing,
+                         1e3 * step.sending, 100 * step.efficiency());
+    s += constants_text(o, f);
+    if (!o.replicated_work.empty()) s += "  replicated work is counted as distributed: the true efficiency is lower\n";
+    return s;
+}
+
+}  // namespace
+
+std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate& f, const scene::Scene& scene) {
+    if (o.ranks == 1) return "1 rank: no partition, no messages\n";
+    const bool planes = !o.cut.empty();
+    std::string s =
+        o.nothing_shared
+            ? fmt::format("{} ranks: the domain cannot be partitioned, every rank computes all of it (replicated work)\n", o.ranks)
+            : fmt::format("{} ranks, partitioned along {}, {}\n", o.ranks, scene.dim() == 2 ? "y" : "z",
+                          planes ? "one slab per rank" : "the same number of particles per rank");
+    s += fmt::format("  each rank stores {}{}{}\n",
+                     !o.own_part ? "the whole grids"
+                     : planes    ? "its slab and ghost planes"
+                                 : "its own and ghost particles",
+                     o.replicated_work.empty() ? "" : "; replicated work: ", o.replicated_work);
+    for (std::size_t rank = 0; rank < o.bytes.size(); ++rank) {
+        const int r = static_cast<int>(rank);
+        if (o.ranks > most_listed && r != 0 && r != o.ranks / 2 && r + 1 != o.ranks) continue;  // those at the ends, and one between
+        s += fmt::format("  rank {:4}", r);
+        if (planes) s += fmt::format("  planes {:5} to {:5}", o.cut.begin(r), o.cut.end(r, o.cut.planes()) - 1);
+        s += fmt::format("  {:>10.4g} MB", o.bytes[rank] / 1e6);
+        if (o.surface_bytes[rank] > 0) s += fmt::format(", {:.4g} MB additional for surface reconstruction", o.surface_bytes[rank] / 1e6);
+        if (!o.sent.empty())
+            s += fmt::format("  {:6} messages {:>12} bytes per step", o.sent[rank].all().messages, o.sent[rank].all().bytes);
+        s += "\n";
+    }
+    if (o.sent.empty()) return s + "  no estimate of the messages of this solver\n";
+    s += fmt::format("  for a step of {} iteration(s) in which motion crosses at most {} cell(s)\n", o.shape.iterations,
+                     o.shape.cells_crossed);
+    if (const auto& besides = o.sent[0].besides; !besides.empty())
+        s += fmt::format("  not counted: messages of {}\n", fmt::join(besides, ", "));
+    return o.nothing_shared ? s : s + weak_text(o, f);
+}
+
+}  // namespace weir::validation

@@ -1,0 +1,54 @@
+// What a scene takes over several ranks, before it runs: planes, memory and messages of each, by the formulas of its solver
+// (SolverKind::sends), and how its steps would get on where grid and ranks grow together (weak scaling), by a model of three constants:
+// seconds a cell or particle, a message's latency, bytes a second.
+#pragma once
+#include "core/traffic.hpp"
+#include "validation/cost/cost_estimate.hpp"
+
+#include <optional>
+
+namespace weir::validation {
+
+/// The way between two ranks.
+struct Link {
+    double latency = 0;    // of a message [s]
+    double bandwidth = 0;  // [bytes/s]
+    std::string source{};  // of these numbers
+};
+
+/// Between two processes of this machine through its memory: half of a round trip of eight bytes, and some megabytes one way; the best of
+/// some tries.
+Link measure_link();
+
+/// Time of a step of a rank, as the model has it [s].
+struct ModelStep {
+    int ranks = 1;
+    double computing = 0, sending = 0;
+    double efficiency() const { return computing / (computing + sending); }
+};
+
+struct ParallelEstimate {
+    int ranks = 1;
+    Cut cut{};                            // empty where particles are shared
+    bool own_part = false;                // each holds its own planes alone
+    bool nothing_shared = false;          // every rank does all of it
+    std::string replicated_work{};        // what every rank does alone
+    std::vector<double> bytes{};          // that each holds
+    std::vector<double> surface_bytes{};  // more while output.surface is made
+    StepShape shape{};
+    std::vector<StepTraffic> sent{};  // by each, a step; empty where the solver has no formula
+    Link link{};
+    double seconds_each = 0;        // a cell or particle and step, on one rank
+    std::vector<ModelStep> weak{};  // as many planes a rank as here, on more and more of them
+};
+
+/// Refuses as the run itself would (sim::require_ranks). Without a link this machine's is measured.
+ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstimate& f, int ranks,
+                                      const std::optional<Link>& link = std::nullopt,
+                                      const std::vector<scene::SolverKind>& kinds = sim::registry());
+std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate& f, const scene::Scene& scene);
+
+/// The model: a round between neighbours takes the latency, one of all as many as the logarithm of their number, and bytes their time.
+ModelStep model_step(double computing, const StepTraffic& sent, int ranks, const Link& link);
+
+}  // namespace weir::validation
