@@ -11,7 +11,7 @@
 #   plan CASE [...]     recommended configuration: --budget 16ms --error 2%
 #   stability [...]     stability limits of solvers
 #   report              the page of published results
-#   list WHAT           solvers, effects, cases or devices
+#   list WHAT           solvers, effects, fields, studies, cases or devices
 #   describe [WHAT]     what a scene may contain
 #   test [...]          all tests; further arguments go to ctest
 #   lint [WHAT]         warnings of clang 14 over the whole tree, or tidy: the checks of .clang-tidy

@@ -21,7 +21,7 @@ void add_stability(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 
 /// What `weir list` takes.
-inline const std::vector<std::string> listed{"solvers", "effects", "fields", "cases", "devices"};
+inline const std::vector<std::string> listed{"solvers", "effects", "fields", "studies", "cases", "devices"};
 
 /// The command line as a page for man, and as completion for bash: from the commands themselves.
 std::string man_page(const CLI::App& app);

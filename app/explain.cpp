@@ -2,9 +2,9 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
-#include "core/slabs.hpp"
-#include "reconstruction/reconstruction.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
+#include "surfaces/reconstruction.hpp"
 
 #include <fmt/format.h>
 
@@ -113,7 +113,7 @@ std::string passes_text(Simulation& simulation) {
 
 /// What output.surface makes of a frame, and at what cost.
 std::string surface_text(const Simulation& simulation) {
-    const auto surface = reconstruction::reconstruction_of(simulation.scene());
+    const auto surface = surfaces::reconstruction_of(simulation.scene());
     if (!surface) return "";
     const auto parts = simulation.solver().distributed_view();
     const auto& mesh = surface->make_part(simulation.fields(), simulation.time());

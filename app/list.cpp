@@ -15,8 +15,10 @@ namespace weir::app {
 
 namespace {
 
-void list_solvers() {
-    for (const auto& schema : sim::schemas()) std::printf("%-14s %s\n", schema.name.c_str(), schema.doc.c_str());
+/// The solvers, or the problems of the validation suite that scenes name in the place of one.
+void list_solvers(bool studies) {
+    for (const auto& schema : sim::schemas())
+        if (schema.study == studies) std::printf("%-14s %s\n", schema.name.c_str(), schema.doc.c_str());
 }
 
 void list_effects() {
@@ -54,15 +56,17 @@ void list_devices() {
 void add_list(CLI::App& app, int& exit_code) {
     auto what = std::make_shared<std::string>();
     auto folder = std::make_shared<std::string>(validation::case_root().string());
-    CLI::App* list = app.add_subcommand(
-        "list", "List the solvers, their effects, their fields and integrals, the cases (* where they are validated), or the devices");
-    list->add_option("what", *what, "solvers, effects, fields, cases or devices")->required()->check(CLI::IsMember(listed));
+    CLI::App* list = app.add_subcommand("list",
+                                        "List the solvers, their effects, their fields and integrals, the problems of the validation suite "
+                                        "(studies), the cases (* where they are "
+                                        "validated), or the devices");
+    list->add_option("what", *what, "solvers, effects, fields, studies, cases or devices")->required()->check(CLI::IsMember(listed));
     list->add_option("--cases", *folder, "Folder of the cases");
     auto markdown = std::make_shared<bool>(false);
     list->add_flag("--markdown", *markdown, "Print the reference of fields (docs/fields.md)");
     list->callback([what, folder, markdown, &exit_code] {
         exit_code = exit_success;
-        if (*what == "solvers") list_solvers();
+        if (*what == "solvers" || *what == "studies") list_solvers(*what == "studies");
         if (*what == "effects") list_effects();
         if (*what == "fields") std::fputs((*markdown ? output_fields_markdown() : output_fields_text()).c_str(), stdout);
         if (*what == "cases") list_cases(*folder);

@@ -5,8 +5,8 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "core/thread_count.hpp"
-#include "distributed/ranks.hpp"
 #include "output/machine.hpp"
+#include "parallel/mpi/ranks.hpp"
 
 #include <cerrno>
 #include <cstdio>

@@ -1,9 +1,9 @@
 #include "app/owner.hpp"
 
 #include "core/error.hpp"
-#include "core/slabs.hpp"
 #include "core/words.hpp"
 #include "output/atomic_file.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/loop.hpp"
 #include "sim/run_id.hpp"
 
@@ -73,7 +73,7 @@ std::string own_as_continued(const std::filesystem::path& folder, const scene::S
             throw BadInput(folder.string() + ": the files in this folder belong to run " + there + ", but the checkpoint belongs to run " +
                            continued + ": continue in the folder of its own run, or in a new one (--out)");
     });
-    return slabs().largest(holds_continued ? 1 : 0) != 0 ? continued : branch;
+    return communicator().largest(holds_continued ? 1 : 0) != 0 ? continued : branch;
 }
 
 }  // namespace weir::app

@@ -9,12 +9,11 @@
 #include "app/run_folder.hpp"
 #include "app/space.hpp"
 #include "core/parallel.hpp"
-#include "core/slabs.hpp"
-#include "distributed/ranks.hpp"
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
-#include "reconstruction/reconstruction.hpp"
+#include "parallel/communicator.hpp"
+#include "parallel/mpi/ranks.hpp"
 #include "rigid/remark.hpp"
 #include "sim/loop.hpp"
 #include "sim/memory_estimate.hpp"
@@ -23,6 +22,7 @@
 #include "sim/run_id.hpp"
 #include "sim/shares.hpp"
 #include "sim/solid_cells.hpp"
+#include "surfaces/reconstruction.hpp"
 #include "validation/cost/parallel_estimate.hpp"
 #include "validation/harness/generic_metrics.hpp"
 #include "validation/report/command.hpp"
@@ -60,7 +60,7 @@ output::FrameOptions frame_options(const scene::Scene& scene) {
                           : compression == "lz4" ? output::Compression::lz4
                                                  : output::Compression::zlib;
     options.solid = sim::solid_cells(scene);
-    if (const std::shared_ptr<reconstruction::Reconstruction> maker = reconstruction::reconstruction_of(scene))
+    if (const std::shared_ptr<surfaces::Reconstruction> maker = surfaces::reconstruction_of(scene))
         options.surface = [maker](const FieldSet& fields, real t) -> const SurfaceMesh& { return maker->make_part(fields, t); };
     return options;
 }
@@ -79,10 +79,10 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
 
 std::string explain_ranks(const Simulation& simulation) {
     const scene::Scene& scene = simulation.scene();
-    if (!slabs().several()) return {};
+    if (!communicator().several()) return {};
     const sim::Shares& shares = simulation.shares();
     const Cut& cut = shares.cut;
-    std::string text = "in parallel on " + std::to_string(slabs().ranks()) + " ranks, ";
+    std::string text = "in parallel on " + std::to_string(communicator().ranks()) + " ranks, ";
     if (shares.nothing_shared()) return text + "the domain cannot be partitioned: every rank computes all of it (replicated work)\n";
     text += std::string("partitioned along ") + (scene.dim() == 2 ? "y" : "z");
     if (cut.empty())
@@ -118,7 +118,7 @@ output::RunLog::RankState state_of(const Simulation& simulation, std::size_t che
 std::string busy_warning(const std::vector<output::RunLog::RankState>& ranks, const TimeSpent& spent) {
     double seconds = 0;
     for (const auto& rank : ranks) seconds = std::max(seconds, rank.busy_seconds);
-    if (!slabs().several() || seconds < 0.1 * spent.stepping) return {};
+    if (!communicator().several() || seconds < 0.1 * spent.stepping) return {};
     char text[300];
     std::snprintf(text, sizeof text,
                   "warning: for %.3g of %.3g s other processes occupied the processors, and the ranks yielded while waiting for messages: "
@@ -130,9 +130,10 @@ std::string busy_warning(const std::vector<output::RunLog::RankState>& ranks, co
 /// Of this machine's memory, which ranks share for all that is known here: so much may one process need that holds all. Ranks that hold
 /// their own planes need it together, and at every cut what a step reads beyond it.
 double memory_for_all(const scene::Scene& scene) {
-    const double available = sim::available_memory(), ranks = slabs().ranks();
+    const double available = sim::available_memory(), ranks = communicator().ranks();
     const auto& kind = sim::kind_named(scene.solver());
-    if (!slabs().several() || !kind.holds_own_part || !kind.holds_own_part(scene, sim::shares_of(scene, slabs().ranks()).cut))
+    if (!communicator().several() || !kind.parallel.distributed_storage ||
+        !kind.parallel.distributed_storage(scene, sim::shares_of(scene, communicator().ranks()).cut))
         return available / ranks;
     return available / (1 + ranks * sim::planes_near_cuts / scene.root().numbers("grid.cells").back());
 }
@@ -191,7 +192,7 @@ public:
     }
     void end(const Simulation& simulation, const std::string& status) {
         progress_.end();
-        const auto sent = of_ranks(slabs().traffic());  // before what this takes
+        const auto sent = of_ranks(communicator().traffic());  // before what this takes
         const auto states = of_ranks(state_of(simulation, checkpoint_));
         tell_ranks(simulation, sent, states);
         if (measured_) log_.set_measured(measured_->values());
@@ -210,7 +211,7 @@ public:
     /// The run broke off: that is said if nothing else can be written any more.
     void fail(const std::string& why) noexcept {
         progress_.end();
-        if (slabs().rank() > 0) return;
+        if (communicator().rank() > 0) return;
         try {
             write_log("failed: " + why);
         } catch (const std::exception&) {
@@ -223,13 +224,13 @@ private:
     using clock = std::chrono::steady_clock;
     static double seconds_since(clock::time_point start) { return std::chrono::duration<double>(clock::now() - start).count(); }
     void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankState>& states) {
-        if (!slabs().several()) return;
+        if (!communicator().several()) return;
         const sim::Shares& shares = simulation.shares();
         using Holds = output::RunLog::Holds;
         const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
                             : simulation.solver().holds_own_planes()     ? Holds::own_planes
                                                                          : Holds::whole_grids;
-        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.replicated_work, sent, states);
+        log_.set_ranks(communicator().ranks(), shares.cut, holds, shares.replicated_work, sent, states);
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.steps().add(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
@@ -318,12 +319,12 @@ int simulate(const RunArguments& arguments) {
 
     scene::Scene scene = arguments.scene.empty() ? scene_of(*checkpoint, overrides)
                                                  : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
-    sim::require_ranks(scene, slabs().ranks());
+    sim::require_ranks(scene, communicator().ranks());
     if (arguments.planned_ranks > 0) {
         if (!arguments.explain) throw BadInput("--ranks estimates a run in parallel (MPI): it requires --explain; mpirun -n N starts one");
         sim::require_ranks(scene, arguments.planned_ranks);
     }
-    slabs().hold_whole(std::any_of(arguments.measure.begin(), arguments.measure.end(), validation::looks_at_whole_fields));
+    communicator().hold_whole(std::any_of(arguments.measure.begin(), arguments.measure.end(), validation::looks_at_whole_fields));
     if (!arguments.explain)
         sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run,
                             memory_for_all(scene));
@@ -360,13 +361,13 @@ int simulate(const RunArguments& arguments) {
     const std::filesystem::path earlier = restarted > 0 ? find_checkpoint(arguments.restart).parent_path() : "";
     Recorder recorder(simulation, folder, run, restarted, holds_run(earlier, continued) ? earlier : "", arguments.quiet);
     if (measured) recorder.measure(*measured);
-    catch_interrupts(slabs().several());
+    catch_interrupts(communicator().several());
     sim::LoopOptions options;
     options.folder = folder;
     options.run = run;
     options.checkpoint_every = arguments.checkpoint_every;
     options.restarted = restarted > 0;
-    options.stop_requests = [] { return slabs().largest(interruptions()); };
+    options.stop_requests = [] { return communicator().largest(interruptions()); };
     sim::Ending ending;
     try {
         ending = sim::run(simulation, recorder, options);
@@ -384,7 +385,7 @@ int simulate(const RunArguments& arguments) {
     if (finished) return exit_success;
     std::fprintf(stderr, "interrupted at step %lld; continue with: weir run --restart %s\n", static_cast<long long>(simulation.steps()),
                  folder.c_str());
-    return slabs().largest(exit_interrupted());
+    return communicator().largest(exit_interrupted());
 }
 
 }  // namespace

@@ -4,5 +4,5 @@ foreach(file ${FILES})
   file(READ ${FOLDER}/${file} text)
   string(APPEND entries "    {\"${file}\", R\"kernel(${text})kernel\"},\n")
 endforeach()
-file(WRITE ${OUTPUT} "#include \"particles/kernel_text.hpp\"\n\nnamespace weir::particles {\n\nconst std::vector<KernelText>& kernel_texts() {\n"
+file(WRITE ${OUTPUT} "#include \"particles/opencl/kernel_text.hpp\"\n\nnamespace weir::particles {\n\nconst std::vector<KernelText>& kernel_texts() {\n"
   "  static const std::vector<KernelText> texts = {\n${entries}  };\n  return texts;\n}\n\n}  // namespace weir::particles\n")

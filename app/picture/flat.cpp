@@ -4,8 +4,8 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "geometry/solids.hpp"
-#include "reconstruction/reconstruction.hpp"
 #include "sim/sampling.hpp"
+#include "surfaces/reconstruction.hpp"
 
 namespace weir::picture {
 
@@ -149,7 +149,7 @@ void draw_solids(const View& view, const Plane& plane, Canvas& canvas) {
 /// The line of the liquid's surface, two pixels wide, away from the sides of the domain, which it follows.
 void draw_surface(const View& view, const Plane& plane, Canvas& canvas) {
     const FieldSet fields = fields_of(view.frame, view.scene);
-    reconstruction::Reconstruction maker(options_for(view, fields), view.scene);
+    surfaces::Reconstruction maker(options_for(view, fields), view.scene);
     const SurfaceMesh& mesh = maker.make(fields, view.frame.time);
     const Colour ink = hex(0x0b2f4a);
     for (const auto& [from, to] : mesh.lines) {

@@ -30,16 +30,16 @@ FieldSet fields_of(const output::FrameData& frame, const scene::Scene& scene) {
     return set;
 }
 
-reconstruction::Options options_for(const View& view, const FieldSet& fields) {
-    using reconstruction::Method;
+surfaces::Options options_for(const View& view, const FieldSet& fields) {
+    using surfaces::Method;
     const bool particles = fields.find(marker_set_name, "position") || fields.find(particle_set_name, "position");
     if (!view.surface.empty()) {
-        const Method method = reconstruction::method_named(view.surface);
+        const Method method = surfaces::method_named(view.surface);
         if (method == Method::level_set && !fields.find(level_set_name)) throw BadInput("--surface level_set: this run has no level set");
         if (method != Method::level_set && !particles) throw BadInput("--surface " + view.surface + ": this run has no particles");
         return {method, 1, method == Method::density ? usual_smoothing : 0};
     }
-    if (const auto said = reconstruction::options_of(view.scene)) return *said;
+    if (const auto said = surfaces::options_of(view.scene)) return *said;
     return {particles ? Method::anisotropic : Method::level_set, 1, 0};
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "app/picture/view.hpp"
 #include "core/solver.hpp"
-#include "reconstruction/options.hpp"
+#include "surfaces/options.hpp"
 
 namespace weir::picture {
 
@@ -10,6 +10,6 @@ namespace weir::picture {
 FieldSet fields_of(const output::FrameData& frame, const scene::Scene& scene);
 /// As the picture is wished, else as the scene says; else from particles by stretched kernels, which are smoothest, else from the level
 /// set.
-reconstruction::Options options_for(const View& view, const FieldSet& fields);
+surfaces::Options options_for(const View& view, const FieldSet& fields);
 
 }  // namespace weir::picture

@@ -4,7 +4,7 @@
 #include "app/picture/quality.hpp"
 #include "app/picture/rays.hpp"
 #include "core/parallel.hpp"
-#include "reconstruction/reconstruction.hpp"
+#include "surfaces/reconstruction.hpp"
 
 namespace weir::picture {
 
@@ -156,7 +156,7 @@ private:
 
 Canvas draw_quality_water(const View& view, const Box& domain) {
     const FieldSet fields = fields_of(view.frame, view.scene);
-    reconstruction::Reconstruction maker(options_for(view, fields), view.scene);
+    surfaces::Reconstruction maker(options_for(view, fields), view.scene);
     const WaterPicture picture(view, domain, maker.make(fields, view.frame.time));
     const WideCamera camera(domain, view.size);
     Canvas canvas(camera.width * rays, camera.height * rays);

@@ -2,7 +2,7 @@
 // 128^3. Prints the median and the fastest of the measured steps, pass by pass; --csv for a table; --threads N (default 1). --heat: what
 // heat adds to a step of smoke, in processor time, at several Fourier numbers k dt/(rho c h^2).
 #include "core/parallel.hpp"
-#include "flow/solver.hpp"
+#include "smoke/solver.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -33,7 +33,7 @@ std::unique_ptr<Solver> plume(int nx, int ny, int nz, const Warmth& warmth = {})
         "initial = {{ smoke = {{ name = \"ball\", centre = [0.5, 0.4, 0.5], radius = 0.25 }}{5} }}\n"
         "effects = {{ buoyancy = {{ alpha = -10.0 }} }}\n{6}",
         nx, ny, nz, static_cast<double>(ny) / nx, static_cast<double>(nz) / nx, warmth.temperature, warmth.substance);
-    const auto kind = flow::kind();
+    const auto kind = smoke::kind();
     return kind.make(scene::parse(text, "plume", {kind.schema}));
 }
 

@@ -11,7 +11,7 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 text() { sed -n '/^set(kernels /,/)/p' "$root/solvers/particles/CMakeLists.txt" | tr '\n()' '   ' | sed 's/^ *set *kernels//'; }
 {
-    echo '#include "particles/kernel_text.hpp"'
+    echo '#include "particles/opencl/kernel_text.hpp"'
     echo 'namespace weir::particles { const std::vector<KernelText>& kernel_texts() { static const std::vector<KernelText> texts = {'
     for file in $(text); do printf '{"%s", R"kernel(' "$file"; cat "$root/solvers/particles/kernels/$file"; echo ')kernel"},'; done
     echo '}; return texts; } }'
@@ -26,13 +26,13 @@ cd "$root/solvers"
         particles/{scheme,solid_terms,solver,squeezed,walls}.cpp
 } >"$work/solvers.cpp"
 printf '#include "%s"\n' particles/{beside_bodies,bodies_in_liquid,device_ice,ice,ice_pieces,vapour}.cpp geometry/mesh/mesh.cpp rigid/*.cpp >"$work/pieces.cpp"
-printf '#include "%s"\n' particles/device_fluid.cpp pbf/device_solver.cpp "$work/kernel_text.cpp" >"$work/step.cpp"
+printf '#include "%s"\n' particles/opencl/device_fluid.cpp pbf/device_solver.cpp "$work/kernel_text.cpp" >"$work/step.cpp"
 compile() { # NAME SOURCE
     ${CXX:-c++} -std=c++20 ${CXXFLAGS:--O2} -ffp-contract=off -DFMT_HEADER_ONLY -ffunction-sections -fdata-sections -I"$work" -I. -I"$root" -c "$2" \
         -o "$work/$1.o"
 }
 pids=()
-for source in "$root/benchmarks/gpu_particles/gpu_particles.cpp" "$work/solvers.cpp" "$work/pieces.cpp" particles/ice_lattice.cpp \
+for source in "$root/benchmarks/gpu_particles/gpu_particles.cpp" "$work/solvers.cpp" "$work/pieces.cpp" particles/heat/ice_lattice.cpp \
     "$work/step.cpp"; do
     compile "$(basename "$source" .cpp)" "$source" &
     pids+=($!)

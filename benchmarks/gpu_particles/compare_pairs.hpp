@@ -1,7 +1,7 @@
 // What the passes over pairs cost over a neighbour list and over cells, for sizes of work groups: lines of the table, rows of the CSV.
 #pragma once
 #include "benchmarks/gpu_particles/pair_passes.hpp"
-#include "particles/device_fluid.hpp"
+#include "particles/opencl/device_fluid.hpp"
 
 #include <algorithm>
 #include <cstdio>

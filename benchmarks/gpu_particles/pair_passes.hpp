@@ -5,11 +5,11 @@
 #pragma once
 #include "backend/device.hpp"
 #include "core/types.hpp"
-#include "particles/device_memory.hpp"
-#include "particles/fluid.hpp"
-#include "particles/frame.hpp"
-#include "particles/kernel_text.hpp"
-#include "particles/passes.hpp"
+#include "particles/opencl/device_memory.hpp"
+#include "particles/opencl/kernel_text.hpp"
+#include "particles/state/fluid.hpp"
+#include "particles/state/frame.hpp"
+#include "particles/threads/passes.hpp"
 #include "pbf/options.hpp"
 
 #include <algorithm>

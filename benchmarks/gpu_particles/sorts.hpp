@@ -2,7 +2,7 @@
 // this work used, and the counting sort of the solvers (kernels/sort.cl). Both end in the same order, which is checked.
 #pragma once
 #include "backend/device.hpp"
-#include "particles/kernel_text.hpp"
+#include "particles/opencl/kernel_text.hpp"
 
 #include <algorithm>
 #include <numeric>

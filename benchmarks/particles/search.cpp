@@ -1,7 +1,7 @@
 // Neighbour search by its three methods and by the fast path's list, on points as dense as a liquid's: milliseconds against their number.
 #include "core/parallel.hpp"
-#include "particles/neighbours.hpp"
-#include "particles/pairs.hpp"
+#include "particles/reference/neighbours.hpp"
+#include "particles/threads/pairs.hpp"
 
 #include <fmt/core.h>
 

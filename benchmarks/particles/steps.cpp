@@ -1,7 +1,7 @@
 // The particle solvers' cost: milliseconds of a step of cases/dam_break_particles from its state at t = 0.25 s, median of 20 steps,
 // against particles, iterations, threads and instruction set.
 #include "core/parallel.hpp"
-#include "particles/isa.hpp"
+#include "particles/threads/isa.hpp"
 #include "pbf/solver.hpp"
 #include "scene/scene.hpp"
 #include "sph/solver.hpp"

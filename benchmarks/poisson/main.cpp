@@ -7,9 +7,9 @@
 // PETSc's methods are asked on one thread, of which they make use. Started by mpirun it shares `multigrid`, or PETSc's methods, between the
 // ranks; the others are then left out.
 #include "core/error.hpp"
-#include "core/load_balance.hpp"
-#include "core/slabs.hpp"
-#include "distributed/ranks.hpp"
+#include "parallel/communicator.hpp"
+#include "parallel/load_balance.hpp"
+#include "parallel/mpi/ranks.hpp"
 #include "pfmg.hpp"
 #include "problems.hpp"
 
@@ -132,14 +132,14 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         return row;
     }
     set_threads(threads);
-    const Cut cut = load_balanced_cut(blocks_in_planes(problem.A.cells), slabs().ranks());
+    const Cut cut = load_balanced_cut(blocks_in_planes(problem.A.cells), communicator().ranks());
     const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0" || solver.starts_with("petsc");
     const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
     row.setup_ms = row.solve_ms = infinity;
     for (int k = 0; k < (slow ? std::min(2, choice.repeat) : choice.repeat); ++k) {
         if (!(slow && k > 0)) method->setup(problem.A);
         p.fill(0);
-        slabs().largest(0);  // barrier
+        communicator().largest(0);  // barrier
         try {
             const OwnPlanes own(cut);
             const bool shares = method->shares_planes();  // of a cut that is there: so asked after it
@@ -191,7 +191,7 @@ void print(const Row& r, double pfmg_ms) {
 template <int D>
 void run_case(const std::string& name, int n, int threads, const Choice& choice) {
     std::vector<std::string> solvers = choice.solvers;
-    if (slabs().several()) {
+    if (communicator().several()) {
         const auto shared = [](const std::string& solver) { return solver == "multigrid" || solver.starts_with("petsc"); };
         if (!std::all_of(solvers.begin(), solvers.end(), shared)) throw BadInput("in parallel: multigrid and PETSc's methods alone");
         if (solvers.empty()) solvers = {"multigrid"};

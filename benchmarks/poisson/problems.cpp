@@ -1,7 +1,7 @@
 #include "problems.hpp"
 
 #include "core/error.hpp"
-#include "poisson/system.hpp"
+#include "poisson/matrix/system.hpp"
 #include "poisson_problem.hpp"
 
 #include <cmath>

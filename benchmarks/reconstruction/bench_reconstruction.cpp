@@ -2,9 +2,9 @@
 // and the error of the volume.
 //   bench_reconstruction [--particles N] [--threads N] [--repeats N] [--cell C] [--shape block|ball|splash]
 #include "core/parallel.hpp"
-#include "reconstruction/measure.hpp"
-#include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
+#include "surfaces/measure.hpp"
+#include "surfaces/reconstruction.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include <string>
 
 using namespace weir;
-using namespace weir::reconstruction;
+using namespace weir::surfaces;
 
 namespace {
 

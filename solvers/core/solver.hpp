@@ -17,7 +17,7 @@
 
 namespace weir {
 
-struct Cut;  // core/halo.hpp
+struct Cut;  // parallel/partition.hpp
 
 inline constexpr real not_applicable = std::numeric_limits<real>::quiet_NaN();
 

@@ -1,7 +1,7 @@
 #include "heightfield/columns.hpp"
 
 #include "core/error.hpp"
-#include "core/plane_checkpoint.hpp"
+#include "parallel/plane_checkpoint.hpp"
 
 #include <fmt/format.h>
 
@@ -86,7 +86,7 @@ void Columns::make_stiffness() {
     const Plane& plane = state_.plane;
     const Field& depth = state_.h;
     const auto pull = [&](real a, real b, real d) { return a > 0 && b > 0 ? state_.g * 0.5 * (a + b) / (d * d) : 0; };
-    const real first = is_distributed() ? of_ranks(slabs().rank() == 0 ? depth[0] : 0)[0] : depth[0];
+    const real first = is_distributed() ? of_ranks(communicator().rank() == 0 ? depth[0] : 0)[0] : depth[0];
     const real uneven = sum_of_columns(plane, [&](std::size_t c) { return std::abs(depth[c] - first) <= 1e-12 * first ? 0.0 : 1.0; });
     k_.uniform = floats_.empty() && uneven == 0;
     k_.along_x = pull(first, first, plane.dx), k_.along_z = plane.dim == 3 ? pull(first, first, plane.dz) : 0;
@@ -181,12 +181,12 @@ void Columns::outflow_at_open_sides(real dt) {
 void Columns::gather_taken() {
     const auto ranks = static_cast<std::size_t>(held_.cut().ranks());
     for (std::size_t end = 0; end < 2; ++end) {
-        if (auto& rows = taken_[end]; !rows.empty()) slabs().gather(held_.cut(), {rows.data(), sizeof(real), state_.plane.nz});
+        if (auto& rows = taken_[end]; !rows.empty()) communicator().gather(held_.cut(), {rows.data(), sizeof(real), state_.plane.nz});
         auto& row = taken_[2 + end];
         if (row.empty()) continue;
         std::vector<std::size_t> begins(ranks + 1, end == 0 ? row.size() : 0);
         begins.front() = 0, begins.back() = row.size();
-        slabs().gather_parts(row.data(), sizeof(real), begins);
+        communicator().gather_parts(row.data(), sizeof(real), begins);
     }
 }
 
@@ -216,7 +216,7 @@ void Columns::fill_ghosts() const {
     auto& own = const_cast<Columns&>(*this);  // only rows of other ranks are written: the state does not change
     if (held_.distributed()) {
         const std::array<Planes, 2> all{planes_of(own.surface_), planes_of(own.rate_)};
-        slabs().refresh(held_.cut(), all, 1, periodic_z_);
+        communicator().refresh(held_.cut(), all, 1, periodic_z_);
     } else {
         for (Field* field : {&own.surface_, &own.rate_}) gather(*field);
     }

@@ -1,7 +1,7 @@
 #include "heightfield/effects.hpp"
 
-#include "core/grid.hpp"
 #include "geometry/brush.hpp"
+#include "parallel/grid.hpp"
 #include "scene/gravity.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // The schema of the solver "heightfield".
-#include "core/traffic.hpp"
 #include "heightfield/columns.hpp"
 #include "heightfield/effects.hpp"
 #include "heightfield/shallow_water.hpp"
 #include "heightfield/solver.hpp"
+#include "parallel/traffic.hpp"
 #include "scene/formula.hpp"
 #include "scene/one_process.hpp"
 
@@ -212,12 +212,10 @@ scene::SolverKind kind() {
             {{"velocity", "depth", "surface", "bed"},
              {"move water"},
              "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"},
-            check_parallel,
-            scene::Shared::by_planes,
-            {},
-            holds_own_rows,
-            traffic_of_step,
-            [](const scene::Scene& scene, int ranks) { return cut_of_rows(Plane(scene), ranks); }};
+            {.check = check_parallel,
+             .distributed_storage = holds_own_rows,
+             .traffic = traffic_of_step,
+             .partition = [](const scene::Scene& scene, int ranks) { return cut_of_rows(Plane(scene), ranks); }}};
 }
 
 }  // namespace weir::heightfield

@@ -1,9 +1,9 @@
 // The columns of a height field: one along y for each cell of the horizontal plane; along x in 2D, on x and z in 3D. In parallel rows along
 // x are distributed: a rank stores its own and ghost rows.
 #pragma once
-#include "core/held_planes.hpp"
 #include "core/solver.hpp"
 #include "core/types.hpp"
+#include "parallel/held_planes.hpp"
 #include "scene/scene.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace weir::heightfield {
 
-/// Values of all columns, x fastest, in rows (core/plane_store.hpp).
+/// Values of all columns, x fastest, in rows (parallel/plane_store.hpp).
 using Field = Grid<real, 2>;
 
 struct Plane {

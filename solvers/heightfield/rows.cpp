@@ -1,7 +1,7 @@
 #include "heightfield/rows.hpp"
 
 #include "core/parallel.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "heightfield/shallow_water.hpp"
 
 #include "core/error.hpp"
-#include "core/plane_checkpoint.hpp"
+#include "parallel/plane_checkpoint.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +91,7 @@ void ShallowWater::move_water(real dt) {
 void ShallowWater::fill_ghost_rows(const std::array<Field*, 3>& water, int ghost_planes) const {
     if (!is_distributed()) return;
     const std::array<Planes, 3> all{planes_of(*water[0]), planes_of(*water[1]), planes_of(*water[2])};
-    slabs().refresh(held_.cut(), all, ghost_planes, held_.ring());
+    communicator().refresh(held_.cut(), all, ghost_planes, held_.ring());
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
@@ -109,7 +109,7 @@ void ShallowWater::fill_ghosts() const {
 }
 
 void ShallowWater::take_reports(real weight) {
-    if (is_distributed()) slabs().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
+    if (is_distributed()) communicator().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
     volume_ = 0, rate_ = 0;
     for (const RowReport& r : reports_) {
         volume_ += r.volume * state_.plane.dz;

@@ -1,7 +1,7 @@
 #include "heightfield/sweep.hpp"
 
 #include "core/parallel.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 
 #include <algorithm>
 

@@ -20,7 +20,7 @@ namespace {
 struct OwnBlocks {
     std::size_t in_block, all, first, last, begin, end;
 
-    explicit OwnBlocks(const DataArray& array) : OwnBlocks(array, slabs().rank()) {}
+    explicit OwnBlocks(const DataArray& array) : OwnBlocks(array, communicator().rank()) {}
     OwnBlocks(const DataArray& array, int rank)
         : in_block(bytes_of_block / array.bytes_of_number),
           all(components(array) * array.tuples.all()),
@@ -49,18 +49,18 @@ std::vector<std::byte> tail_of(const DataArray& array) {
             const OwnBlocks before(array, rank);
             return before.begin < own.begin && own.begin <= before.end;
         };
-        int owner = slabs().rank() - 1;
+        int owner = communicator().rank() - 1;
         while (!began_it(owner)) --owner;
         messages.push_back({owner, head.data(), head.size(), nullptr, 0});
     }
-    for (int rank = slabs().rank() + 1; rank < slabs().ranks(); ++rank) {
+    for (int rank = communicator().rank() + 1; rank < communicator().ranks(); ++rank) {
         const OwnBlocks next(array, rank);
         const std::size_t begin = next.first, end = std::min(next.last, own.tail_end());
         if (begin >= end) continue;
         messages.push_back(
             {rank, nullptr, 0, tail.data() + (begin - own.last) * array.bytes_of_number, (end - begin) * array.bytes_of_number});
     }
-    slabs().exchange(messages);
+    communicator().exchange(messages);
     return tail;
 }
 
@@ -131,7 +131,7 @@ EncodedPart encoded_part(const DataArray& array, Compression compression) {
 
 Extremes extremes_of(const DataArray& array) {
     constexpr std::size_t piece = 4096;  // number of tuples
-    const int rank = slabs().rank();
+    const int rank = communicator().rank();
     const std::size_t begin = array.tuples.begin(rank), end = array.tuples.end(rank);
     std::vector<Extremes> pieces((end - begin + piece - 1) / piece);
     parallel_for(0, static_cast<int>(pieces.size()), [&](int p) {

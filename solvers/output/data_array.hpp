@@ -1,7 +1,7 @@
 // Description of a data array of a file: its elements are fetched while it is written, and in parallel each rank has a part of its tuples.
 #pragma once
-#include "core/slabs.hpp"
 #include "core/types.hpp"
+#include "parallel/communicator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ struct Parts {
     bool all_on_first() const { return begins[1] == all(); }
     /// All on rank 0.
     static Parts of_first(std::size_t all) {
-        Parts parts{std::vector<std::size_t>(static_cast<std::size_t>(slabs().ranks()) + 1, all)};
+        Parts parts{std::vector<std::size_t>(static_cast<std::size_t>(communicator().ranks()) + 1, all)};
         parts.begins[0] = 0;
         return parts;
     }

@@ -1,7 +1,7 @@
 #include "output/frame_files.hpp"
 
-#include "core/halo.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
+#include "parallel/partition.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -64,7 +64,7 @@ Parts parts_of_grid(const FieldSet& fields, const std::array<int, 3>& n) {
 DataArray hidden(std::vector<std::uint8_t> solid, const Parts& tuples) {
     constexpr std::uint8_t hidden_cell = 32;  // vtkDataSetAttributes::HIDDENCELL
     return data_array<std::uint8_t>("vtkGhostType", 1, tuples,
-                                    [solid = std::move(solid), first = tuples.begin(slabs().rank())](std::size_t i, int) {
+                                    [solid = std::move(solid), first = tuples.begin(communicator().rank())](std::size_t i, int) {
                                         return solid[i - first] ? hidden_cell : std::uint8_t{0};
                                     });
 }
@@ -177,7 +177,7 @@ VtkFile image_of(const FieldSet& fields, real t, const FrameOptions& options) {
         data.push_back(field.where == Where::face ? at_centres(field, grid, cells, options) : as_it_is(field, cells, options));
     }
     if (options.solid) {
-        const int rank = slabs().rank();
+        const int rank = communicator().rank();
         data.push_back(hidden(options.solid(fields, t, cells.begin(rank), cells.end(rank)), cells));
         file.version = "2.2";  // the first version with hidden cells
     }
@@ -213,7 +213,7 @@ VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, con
     const Parts all = fields.particles_in_parts ? Parts{begins_of_ranks(here)}
                       : has_rows                ? parts_of_planes(fields, static_cast<std::size_t>(sheet->points[0]), sheet->points[1])
                                                 : Parts::of_first(here);
-    const std::size_t first = fields.particles_in_parts ? all.begin(slabs().rank()) : 0;
+    const std::size_t first = fields.particles_in_parts ? all.begin(communicator().rank()) : 0;
     std::vector<DataArray> data;
     for (const auto& field : fields.fields)
         if (field.set == set && field.name != "position" && chosen(options, field)) data.push_back(as_it_is(field, all, options, first));
@@ -241,7 +241,7 @@ VtkFile surface_of(const SurfaceMesh& mesh, real t, const FrameOptions& options)
     const auto cells = [&](const auto& list) {
         constexpr std::size_t corners = std::tuple_size_v<typename std::decay_t<decltype(list)>::value_type>;
         const Parts part = parts(list);
-        return cells_of(part, corners, [&list, first = part.begin(slabs().rank())](std::size_t at) {
+        return cells_of(part, corners, [&list, first = part.begin(communicator().rank())](std::size_t at) {
             return static_cast<std::int64_t>(list[at / corners - first][at % corners]);
         });
     };

@@ -1,10 +1,10 @@
 #include "output/frames.hpp"
 
 #include "core/error.hpp"
-#include "core/slabs.hpp"
 #include "output/atomic_file.hpp"
 #include "output/frame_files.hpp"
 #include "output/series_file.hpp"
+#include "parallel/communicator.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,7 +1,7 @@
 // run.json: the parsed scene, the machine, and a summary of the steps' reports (output/step_log.hpp has every step).
 #pragma once
-#include "core/slabs.hpp"
 #include "output/step_log.hpp"
+#include "parallel/communicator.hpp"
 #include "scene/scene.hpp"
 
 #include <filesystem>

@@ -18,7 +18,7 @@ namespace {
 class Destination {
 public:
     Destination(const std::filesystem::path& path, std::size_t room_for_text) : data_(room_for_text) {
-        if (slabs().rank() > 0) return;
+        if (communicator().rank() > 0) return;
         attempt([&] { file_.emplace(path); });
         put(std::string(room_for_text, ' '));
     }
@@ -34,7 +34,7 @@ public:
         if (array.tuples.all_on_first())
             sink(own.data(), bytes);
         else
-            slabs().stream_to_first(own.data(), bytes, sink);
+            communicator().stream_to_first(own.data(), bytes, sink);
     }
     template <class T>
     void put_number(T number) {
@@ -53,7 +53,7 @@ public:
 private:
     template <class F>
     void attempt(F&& f) {
-        if (slabs().rank() > 0 || failure_) return;
+        if (communicator().rank() > 0 || failure_) return;
         try {
             f();
         } catch (...) {

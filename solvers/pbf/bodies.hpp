@@ -1,7 +1,7 @@
 // Coupling of PBF particles and bodies, summed on the host for every backend. Positions are float4 of sorted particles, in the layout of
 // the passes, with the multiplier's change as fourth number.
 #pragma once
-#include "particles/bodies_in_liquid.hpp"
+#include "particles/boundaries/bodies_in_liquid.hpp"
 
 #include <algorithm>
 #include <array>

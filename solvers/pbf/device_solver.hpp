@@ -1,7 +1,7 @@
 // Position Based Fluids (Macklin & Müller 2013, Algorithm 1) with the whole step on a device: the same passes as PbfSolver, over the same
 // text of the pair physics.
 #pragma once
-#include "particles/device_solver.hpp"
+#include "particles/opencl/device_solver.hpp"
 #include "pbf/method.hpp"
 
 namespace weir::pbf {

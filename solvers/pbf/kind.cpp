@@ -1,6 +1,6 @@
 // The registration of "pbf": its keys, effects and factory.
-#include "particles/kind.hpp"
-#include "particles/traffic.hpp"
+#include "particles/state/kind.hpp"
+#include "particles/ranks/traffic.hpp"
 #include "pbf/device_solver.hpp"
 #include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
@@ -104,11 +104,7 @@ scene::SolverKind kind() {
     return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"fluid.viscosity"}}, {}),
             particles::make_solver<PbfSolver, ReferencePbfSolver, DevicePbfSolver>,
             particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"}),
-            particles::refuse_in_parallel,
-            scene::Shared::by_particles,
-            {},
-            {},
-            traffic_of_step};
+            {.check = particles::refuse_in_parallel, .shared = scene::Shared::by_particles, .traffic = traffic_of_step}};
 }
 
 }  // namespace weir::pbf

@@ -1,8 +1,8 @@
 // The part of Position Based Fluids common to all backends: options, advised and stable steps, relaxation of the initial state, additions
 // to integrals and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
 #pragma once
-#include "particles/solver.hpp"
-#include "particles/squeezed.hpp"
+#include "particles/boundaries/squeezed.hpp"
+#include "particles/state/solver.hpp"
 #include "pbf/options.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "pbf/options.hpp"
 
-#include "particles/fastest_flow.hpp"
-#include "particles/flow.hpp"
-#include "particles/passes.hpp"
-#include "particles/vapour.hpp"
+#include "particles/heat/vapour.hpp"
+#include "particles/state/fastest_flow.hpp"
+#include "particles/state/flow.hpp"
+#include "particles/threads/passes.hpp"
 #include "scene/names.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // The options of a PBF scene ("scheme" and two effects), and the parameters of the pair physics derived from them.
 #pragma once
 #include "core/solver.hpp"
-#include "particles/fluid.hpp"
-#include "particles/scheme.hpp"
+#include "particles/state/fluid.hpp"
+#include "particles/state/scheme.hpp"
 
 namespace weir::pbf {
 

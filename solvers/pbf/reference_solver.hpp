@@ -1,7 +1,7 @@
 // Position Based Fluids (Macklin & Müller 2013, Algorithm 1) in plain double precision over all pairs on one thread: the step of PbfSolver
 // in its simplest form, the reference for every backend. Its passes allocate their results.
 #pragma once
-#include "particles/reference_solver.hpp"
+#include "particles/reference/reference_solver.hpp"
 #include "pbf/method.hpp"
 
 namespace weir::pbf {

@@ -1,6 +1,6 @@
 // Position Based Fluids (Macklin & Müller 2013, Algorithm 1) in two and three dimensions, on threads and SIMD lanes.
 #pragma once
-#include "particles/threaded_solver.hpp"
+#include "particles/threads/threaded_solver.hpp"
 #include "pbf/method.hpp"
 #include "scene/solver_kind.hpp"
 

@@ -4,7 +4,7 @@
 #include "core/error.hpp"
 #include "poisson/faces.hpp"
 #include "poisson/factories.hpp"
-#include "poisson/list_solver.hpp"
+#include "poisson/matrix/list_solver.hpp"
 
 #include <fftw3.h>
 

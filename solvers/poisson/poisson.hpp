@@ -7,9 +7,9 @@
 // h² is scaled out: b = −h² ∇·u ρ/dt for a projection. Connected components without any air neighbour are singular: each gets a
 // compatible right-hand side (its mean removed) and a zero-mean solution.
 #pragma once
-#include "core/grid.hpp"
 #include "core/types.hpp"
-#include "poisson/low_rank.hpp"
+#include "parallel/grid.hpp"
+#include "poisson/matrix/low_rank.hpp"
 
 #include <array>
 #include <cstdint>
@@ -73,8 +73,8 @@ public:
     /// Sets the relative residual at which later solves may stop. Methods without a tolerance ignore it.
     virtual void set_tolerance(real) {}
     virtual std::size_t bytes() const = 0;
-    /// In parallel (core/slabs.hpp): returns whether solve() works on each rank's own planes of b and p. Otherwise it requires them whole,
-    /// on all ranks.
+    /// In parallel (parallel/communicator.hpp): returns whether solve() works on each rank's own planes of b and p. Otherwise it requires
+    /// them whole, on all ranks.
     virtual bool shares_planes() const { return false; }
 };
 

@@ -2,7 +2,7 @@
 // with one exchange between stages (v_cycle.hpp); the rest are sums over planes (geometric_cg.cpp).
 #include "poisson/traffic.hpp"
 
-#include "poisson/geometric_cg.hpp"
+#include "poisson/geometric/geometric_cg.hpp"
 
 namespace weir::poisson {
 

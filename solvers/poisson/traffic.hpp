@@ -1,7 +1,7 @@
 // Estimate of what a solve sends in parallel.
 #pragma once
-#include "core/traffic.hpp"
 #include "core/types.hpp"
+#include "parallel/traffic.hpp"
 
 #include <array>
 

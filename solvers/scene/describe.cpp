@@ -88,11 +88,15 @@ std::string overview(const std::vector<SolverSchema>& solvers) {
     for (const Key& k : common_keys()) out += fmt::format("    {:9} {}\n", k.name, first_sentence(k.doc));
     out += "\nSolvers:\n";
     for (const SolverSchema& s : solvers) {
+        if (s.study) continue;
         std::vector<std::string> effects;
         for (const Variant& e : s.effects) effects.push_back(e.name);
         out += fmt::format("    {:9} {}\n", s.name, first_sentence(s.doc));
         if (!effects.empty()) out += wrapped(fmt::format("effects: {}", fmt::join(effects, ", ")), 14);
     }
+    out += "\nProblems of the validation suite, as solvers:\n";
+    for (const SolverSchema& s : solvers)
+        if (s.study) out += fmt::format("    {:14} {}\n", s.name, first_sentence(s.doc));
     return out + "\nweir describe NAME describes a solver, an effect, a key such as time.cfl, a shape or a motion.\n";
 }
 

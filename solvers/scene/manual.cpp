@@ -135,7 +135,11 @@ std::string manual(const std::vector<SolverSchema>& solvers) {
     out += "\n## Motions\nFor `solids`, as `motion = { kind = ... }`.\n";
     for (const Variant& v : motions()) out += variant_section(v, "###");
     out += "\n## Solvers\n";
-    for (const SolverSchema& s : solvers) out += solver_section(s);
+    for (const SolverSchema& s : solvers)
+        if (!s.study) out += solver_section(s);
+    out += "\n## Problems of the validation suite\nThey measure one part of a method and are no solvers of flows.\n";
+    for (const SolverSchema& s : solvers)
+        if (s.study) out += solver_section(s);
     return out;
 }
 

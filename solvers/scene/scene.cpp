@@ -33,7 +33,7 @@ const SolverSchema* chosen_solver(const Node& root, const std::string& file, con
     std::vector<std::string> names;
     for (const SolverSchema& s : solvers) {
         if (s.name == member->value.text) return &s;
-        names.push_back(s.name);
+        if (!s.study) names.push_back(s.name);
     }
     problems.push_back({.file = file,
                         .place = member->value.place,

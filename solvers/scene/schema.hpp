@@ -75,6 +75,7 @@ struct SolverSchema {
     bool columns = false;                // it uses one cell along y, for any number of cells in scenes shared with other solvers
     bool whole_columns = false;          // its memory depends on columns and their differences in height: a smaller copy keeps the height
     std::string why_without{};           // the reason, where needed, and the alternative
+    bool study = false;                  // a problem of the validation suite with an exact solution, not a solver of flows
 };
 
 /// The keys that every scene has (title, solver, dim, grid, time, fluid, sides, liquid, solids, emitters, initial, probes, output).

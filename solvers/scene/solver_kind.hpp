@@ -10,10 +10,10 @@
 #include <vector>
 
 namespace weir {
-struct Cut;  // core/halo.hpp
+struct Cut;  // parallel/partition.hpp
 struct RankOf;
 struct StepShape;
-struct StepTraffic;  // core/traffic.hpp
+struct StepTraffic;  // parallel/traffic.hpp
 }  // namespace weir
 
 namespace weir::scene {
@@ -28,25 +28,30 @@ struct PlainStep {
 /// What is distributed among ranks: the planes of the slowest axis, or the particles in equal parts in the order of their cells.
 enum class Shared { by_planes, by_particles };
 
-struct SolverKind {
-    SolverSchema schema;
-    std::function<std::unique_ptr<Solver>(const Scene&)> make;
-    PlainStep plain{};
+/// What a solver provides for runs in parallel (MPI).
+struct ParallelSupport {
     /// Rejects, at its key, scenes that are not supported in parallel. Empty: the solver runs in one process only.
-    std::function<void(const Scene&)> check_parallel{};
+    std::function<void(const Scene&)> check{};
     /// What is distributed over the ranks.
     Shared shared = Shared::by_planes;
     /// The replicated work of a step of this scene with this partition, in a few words; an empty text, or no function: none.
     std::function<std::string(const Scene&, const Cut&)> replicated_work{};
     /// Returns whether a scene with this partition has distributed storage. Empty: all ranks store everything.
-    std::function<bool(const Scene&, const Cut&)> holds_own_part{};
+    std::function<bool(const Scene&, const Cut&)> distributed_storage{};
     /// Estimate of what a rank sends in such a step. Empty: unknown.
-    std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> sends{};
+    std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> traffic{};
     /// The partition of a scene's planes among `ranks` ranks; an empty one: replicated work. No function: the equal parts of cut_of.
-    std::function<Cut(const Scene&, int ranks)> cut{};
+    std::function<Cut(const Scene&, int ranks)> partition{};
     /// The work of a step per plane of the slowest axis, in any unit: at the start of a scene, or for a state (collective). Empty: equal
     /// for all planes.
     std::function<std::vector<std::int64_t>(const Scene&, const Checkpoint*)> work_of_planes{};
+};
+
+struct SolverKind {
+    SolverSchema schema;
+    std::function<std::unique_ptr<Solver>(const Scene&)> make;
+    PlainStep plain{};
+    ParallelSupport parallel{};
 };
 
 /// The schemas of these solvers.

@@ -1,4 +1,4 @@
-// "output.surface", for solvers of liquids with a free surface; read by reconstruction/options.cpp.
+// "output.surface", for solvers of liquids with a free surface; read by surfaces/options.cpp.
 #pragma once
 #include "scene/schema.hpp"
 

@@ -1,6 +1,6 @@
 #include "sim/balance.hpp"
 
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 
 #include <fmt/format.h>
 
@@ -204,7 +204,7 @@ Balance::Balance(const Simulation& simulation) : from_(simulation.time()), start
 }
 
 void Balance::on_step(const Simulation& simulation, const StepReport& report) {
-    if (++steps_ % steps_between == 0 && !slabs().several()) on_frame(simulation);
+    if (++steps_ % steps_between == 0 && !communicator().several()) on_frame(simulation);
     if (std::isnan(report.max_divergence)) return;
     divergence_ = std::fmax(divergence_, report.max_divergence);
     cell_change_ = std::fmax(cell_change_, report.max_divergence * report.dt);

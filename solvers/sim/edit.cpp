@@ -1,6 +1,6 @@
 // Steering a running simulation between two steps: writing fields, adding and removing particles, calling observers.
 #include "core/error.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/simulation.hpp"
 #include "sim/steadiness.hpp"
 
@@ -39,7 +39,8 @@ private:
 
 /// Edits need the whole state, but a rank may hold only a part of it.
 void one_process_only(const std::string& what) {
-    if (slabs().several()) throw BadInput(fmt::format("{} in one process only, and the number of ranks is {}", what, slabs().ranks()));
+    if (communicator().several())
+        throw BadInput(fmt::format("{} in one process only, and the number of ranks is {}", what, communicator().ranks()));
 }
 
 /// Checks that a point has as many coordinates as the scene has dimensions.
@@ -59,7 +60,7 @@ void check_points(std::span<const Vec<3>> points, const std::string& what, const
 
 std::vector<std::string> Simulation::editable() {
     std::vector<std::string> names;
-    if (slabs().several()) return names;
+    if (communicator().several()) return names;
     for (const auto& field : solver_->editable()) names.push_back(full_name(field.set, field.name));
     return names;
 }

@@ -1,7 +1,7 @@
 #include "sim/extremes.hpp"
 
-#include "core/slabs.hpp"
 #include "geometry/solids.hpp"
+#include "parallel/communicator.hpp"
 #include "rigid/bodies.hpp"
 #include "sim/owners.hpp"
 
@@ -64,7 +64,7 @@ Extreme largest_of_points(const FieldSet& fields, const FieldView& view) {
 /// Global maximum over the ranks.
 Extreme largest(const FieldSet& fields, const FieldView& view) {
     Extreme most = view.where == Where::particle ? largest_of_points(fields, view) : largest_in_grid(fields, view);
-    if (slabs().several())
+    if (communicator().several())
         for (const Extreme& other : of_ranks(most))
             if (beyond(other.value, most.value)) most = other;
     return most;

@@ -1,6 +1,6 @@
 #include "sim/loop.hpp"
 
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/memory_estimate.hpp"
 #include "sim/run_id.hpp"
 
@@ -64,8 +64,8 @@ struct GoodState {
 bool all_can_read(const std::filesystem::path& file) {
     std::error_code none;
     const auto bytes = std::filesystem::file_size(file, none);
-    const bool can = !none && static_cast<double>(bytes) * slabs().ranks() < available_memory();
-    return slabs().largest(can ? 0 : 1) == 0;
+    const bool can = !none && static_cast<double>(bytes) * communicator().ranks() < available_memory();
+    return communicator().largest(can ? 0 : 1) == 0;
 }
 
 /// In parallel, a run that goes on is also repartitioned where the state requires it (load balancing).

@@ -3,12 +3,12 @@
 #include "scene/steer.hpp"
 
 #include "core/error.hpp"
-#include "core/slabs.hpp"
 #include "geometry/liquid_fraction.hpp"
 #include "geometry/shape.hpp"
-#include "reconstruction/contour.hpp"
-#include "reconstruction/reconstruction.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
+#include "surfaces/contour.hpp"
+#include "surfaces/reconstruction.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -171,8 +171,8 @@ double particles_in(const FieldSet& fields) {
 
 class WholeGrids {
 public:
-    WholeGrids() : before_(slabs().holds_whole()) { slabs().hold_whole(true), slabs().build_serial(true); }
-    ~WholeGrids() { slabs().hold_whole(before_), slabs().build_serial(false); }
+    WholeGrids() : before_(communicator().holds_whole()) { communicator().hold_whole(true), communicator().build_serial(true); }
+    ~WholeGrids() { communicator().hold_whole(before_), communicator().build_serial(false); }
     WholeGrids(const WholeGrids&) = delete;
     WholeGrids& operator=(const WholeGrids&) = delete;
 
@@ -288,7 +288,7 @@ scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::Solv
 
 /// Memory for the scene's surface mesh, extrapolated from a copy per particle, or per cell of a level set.
 double surface_bytes(const scene::Scene& scene, const Held& copy, const MemoryEstimate& f) {
-    const auto surface = reconstruction::can_contour() ? reconstruction::reconstruction_of(scene) : nullptr;
+    const auto surface = surfaces::can_contour() ? surfaces::reconstruction_of(scene) : nullptr;
     if (!surface) return 0;
     surface->make(static_cast<const Solver&>(*copy.solver).fields(), 0);
     const double times = copy.particles > 0 ? f.particles / copy.particles : f.cells / product(copy.cells);
@@ -402,13 +402,13 @@ double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<d
 }
 
 double surface_bytes_of_rank(const scene::Scene& scene, const MemoryEstimate& estimate, int rank, int ranks) {
-    const auto options = reconstruction::options_of(scene);
+    const auto options = surfaces::options_of(scene);
     if (!options) return 0;
     constexpr double samples_beside = 2, markers_per_cell = 2;
     const double planes = scene.root().numbers("grid.cells").back(), cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
-    const double beside = options->method == reconstruction::Method::level_set
+    const double beside = options->method == surfaces::Method::level_set
                               ? samples_beside
-                              : reconstruction::read_beside(*options) / (estimate.particle_solver ? 1 : markers_per_cell);
+                              : surfaces::read_beside(*options) / (estimate.particle_solver ? 1 : markers_per_cell);
     return estimate.surface_bytes * std::min(1.0, 1.0 / ranks + (ranks > 1 ? cuts * beside / planes : 0));
 }
 

@@ -2,8 +2,8 @@
 // Their bytes per cell and per particle, and how both grow, are extrapolated. Solvers, effects and pressure methods report their own
 // allocations; this file keeps no table of them.
 #pragma once
-#include "core/halo.hpp"
 #include "core/solver.hpp"
+#include "parallel/partition.hpp"
 #include "scene/scene.hpp"
 #include "scene/solver_kind.hpp"
 

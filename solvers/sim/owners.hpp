@@ -1,8 +1,8 @@
 // The part of a solver's fields that this rank reads in parallel (FieldSet::cut), and reductions over all parts.
 #pragma once
-#include "core/owners.hpp"
-#include "core/rank_ordered.hpp"
 #include "core/solver.hpp"
+#include "parallel/ownership.hpp"
+#include "parallel/rank_ordered.hpp"
 
 #include <algorithm>
 #include <span>
@@ -25,7 +25,7 @@ inline int planes_in(const FieldSet& fields, const FieldView& view, std::size_t 
 inline PlaneRange own_planes(const FieldSet& fields, const FieldView& view, std::size_t component) {
     const int planes = planes_in(fields, view, component);
     if (!fields.cut || planes == 1) return {0, planes};
-    return {fields.cut->begin(slabs().rank()), fields.cut->end(slabs().rank(), planes)};
+    return {fields.cut->begin(communicator().rank()), fields.cut->end(communicator().rank(), planes)};
 }
 
 /// The range of their entries, [first, second).

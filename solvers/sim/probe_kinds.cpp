@@ -58,7 +58,7 @@ public:
             for (int c = 0; c < components_; ++c) {
                 const Lattice lattice = Lattice::of(field, fields.grid, c);
                 if (fields.cut) owners.push_back(owner_of(*fields.cut, plane_below(lattice, fields.grid.dim - 1, x)));
-                const bool here = !fields.cut || owners.back() == slabs().rank();
+                const bool here = !fields.cut || owners.back() == communicator().rank();
                 row.push_back(known  ? answer[static_cast<std::size_t>(c)]
                               : here ? sample_to_wall(field.data[static_cast<std::size_t>(c)], lattice, x)
                                      : 0);

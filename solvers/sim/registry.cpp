@@ -1,11 +1,11 @@
 #include "sim/registry.hpp"
 
-#include "core/load_balance.hpp"
-#include "flow/solver.hpp"
 #include "heightfield/solver.hpp"
+#include "parallel/load_balance.hpp"
 #include "pbf/solver.hpp"
 #include "scene/names.hpp"
 #include "sim/shares.hpp"
+#include "smoke/solver.hpp"
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
 #include "tallcell/solver.hpp"
@@ -17,7 +17,7 @@
 namespace weir::sim {
 
 const std::vector<scene::SolverKind>& registry() {
-    static const std::vector<scene::SolverKind> kinds = {flow::kind(),
+    static const std::vector<scene::SolverKind> kinds = {smoke::kind(),
                                                          water::kind(),
                                                          studies::transport_kind(),
                                                          studies::poisson_kind(),
@@ -50,18 +50,19 @@ int planes_of(const scene::Scene& scene) { return static_cast<int>(scene.root().
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds) {
     if (ranks == 1) return;
     const auto& kind = kind_named(scene.solver(), kinds);
-    if (!kind.check_parallel) {
+    if (!kind.parallel.check) {
         std::string able;
         for (const auto& other : kinds)
-            if (other.check_parallel) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
+            if (other.parallel.check) able += (able.empty() ? "" : ", ") + scene::quote(other.schema.name);
         scene.refuse(
             "solver",
             "solver " + scene::quote(scene.solver()) + " runs in one process only, and the number of ranks is " + std::to_string(ranks),
             "solvers that run in parallel: " + able);
     }
-    kind.check_parallel(scene);
+    kind.parallel.check(scene);
     const int planes = planes_of(scene);
-    if (kind.shared == scene::Shared::by_planes && planes < ranks && !(kind.cut && kind.cut(scene, ranks).empty()))
+    if (kind.parallel.shared == scene::Shared::by_planes && planes < ranks &&
+        !(kind.parallel.partition && kind.parallel.partition(scene, ranks).empty()))
         scene.refuse("grid.cells",
                      std::to_string(planes) + " planes of cells along " + (scene.dim() == 2 ? "y" : "z") + " cannot be partitioned over " +
                          std::to_string(ranks) + " ranks",
@@ -69,18 +70,18 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
 }
 
 Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& kind) {
-    Shares shares{.shared = kind.shared};
+    Shares shares{.shared = kind.parallel.shared};
     if (ranks == 1 || shares.shared == scene::Shared::by_particles) return shares;
-    if (kind.cut)
-        shares.cut = kind.cut(scene, ranks);
-    else if (kind.work_of_planes)
-        shares.cut = load_balanced_cut(kind.work_of_planes(scene, nullptr), ranks);
+    if (kind.parallel.partition)
+        shares.cut = kind.parallel.partition(scene, ranks);
+    else if (kind.parallel.work_of_planes)
+        shares.cut = load_balanced_cut(kind.parallel.work_of_planes(scene, nullptr), ranks);
     else
         shares.cut = cut_of(planes_of(scene), ranks);
     if (shares.cut.empty())
         shares.replicated_work = "all of it";
-    else if (kind.replicated_work)
-        shares.replicated_work = kind.replicated_work(scene, shares.cut);
+    else if (kind.parallel.replicated_work)
+        shares.replicated_work = kind.parallel.replicated_work(scene, shares.cut);
     return shares;
 }
 

@@ -14,7 +14,7 @@ const std::vector<scene::SolverSchema>& schemas();
 /// The solver of that name, which a checked scene always has; std::logic_error otherwise.
 const scene::SolverKind& kind_named(std::string_view name, const std::vector<scene::SolverKind>& kinds = registry());
 
-/// Rejects, by its key, what does not run on this number of ranks; see SolverKind::check_parallel.
+/// Rejects, by its key, what does not run on this number of ranks; see ParallelSupport::check.
 void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
 
 }  // namespace weir::sim

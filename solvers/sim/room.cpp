@@ -1,8 +1,8 @@
 #include "sim/room.hpp"
 
-#include "core/grid.hpp"
 #include "geometry/sides.hpp"
 #include "geometry/solids.hpp"
+#include "parallel/grid.hpp"
 
 #include <fmt/format.h>
 

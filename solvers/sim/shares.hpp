@@ -1,6 +1,6 @@
 // The partition of a scene among several ranks.
 #pragma once
-#include "core/halo.hpp"
+#include "parallel/partition.hpp"
 #include "sim/registry.hpp"
 
 #include <string>

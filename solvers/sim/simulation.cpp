@@ -1,9 +1,10 @@
 #include "sim/simulation.hpp"
 
-#include "core/load_balance.hpp"
 #include "core/parallel.hpp"
 #include "core/thread_count.hpp"
 #include "geometry/mesh/mesh.hpp"
+#include "mac/bodies/thin_solids.hpp"
+#include "parallel/load_balance.hpp"
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
@@ -15,7 +16,6 @@
 #include "sim/room.hpp"
 #include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
-#include "staggered/thin_solids.hpp"
 
 #include <fmt/format.h>
 
@@ -73,7 +73,7 @@ void require_sound(const Simulation& simulation) {
     if (!(simulation.time() >= 0 && simulation.time() <= far * simulation.end_time()))
         throw BadInput(fmt::format("the checkpoint is invalid: its time is {} s, and the end of its scene is {} s",
                                    scene::number_text(simulation.time()), scene::number_text(simulation.end_time())));
-    if (slabs().several()) return;  // in parallel (MPI) a rank holds a part of them: the first step checks it
+    if (communicator().several()) return;  // in parallel (MPI) a rank holds a part of them: the first step checks it
     try {
         sim::check_finite(simulation.fields(), {});
     } catch (const NumericalFailure& failure) {
@@ -161,7 +161,7 @@ Simulation::Simulation(scene::Scene scene) : Simulation(std::move(scene), sim::r
 Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>& kinds)
     : scene_(unread(fitting(std::move(scene), kinds))),
       kind_(sim::kind_named(scene_.solver(), kinds)),
-      shares_(std::make_shared<sim::Shares>(sim::shares_of(scene_, slabs().ranks(), kind_))),
+      shares_(std::make_shared<sim::Shares>(sim::shares_of(scene_, communicator().ranks(), kind_))),
       solver_(make_solver(scene_, kind_, shares_->cut)),
       probes_(scene_, *solver_),
       every_(scene_.root().number_or("output.every", infinity)),
@@ -175,7 +175,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
         check_output_fields(scene_, solver_->fields());
     }
     refuse_ignored(scene_, kind_);
-    for (const std::string& remark : staggered::remarks_on_thin_solids(scene_)) warnings_.push_back(scene_.file() + ": " + remark);
+    for (const std::string& remark : mac::remarks_on_thin_solids(scene_)) warnings_.push_back(scene_.file() + ": " + remark);
     measure();
     if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
 }
@@ -325,7 +325,7 @@ StepReport Simulation::step_towards(real target) {
 
 /// In parallel (MPI) a step waits for other processes; its time then says nothing about threads.
 void Simulation::choose_threads(const sim::StepTime& step) {
-    if (slabs().several()) return;
+    if (communicator().several()) return;
     threads_.add(step);
     if (const std::string warning = threads_.warning(); !warning.empty()) warnings_.push_back(scene_.file() + ": " + warning);
 }

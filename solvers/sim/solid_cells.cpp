@@ -1,6 +1,6 @@
 #include "sim/solid_cells.hpp"
 
-#include "core/grid.hpp"
+#include "parallel/grid.hpp"
 #include "rigid/bodies.hpp"
 
 #include <memory>

@@ -34,7 +34,7 @@ template <class F>
 real known_at(const FieldSet& fields, const Vec<3>& x, F&& number) {
     if (!fields.cut) return number();
     const int owner = owner_of(*fields.cut, plane_below(Lattice::of_cells(fields.grid), fields.grid.dim - 1, x));
-    return of_owners({owner == slabs().rank() ? number() : 0}, {owner})[0];
+    return of_owners({owner == communicator().rank() ? number() : 0}, {owner})[0];
 }
 
 /// Length of [i, i + 1] on which the linear interpolant from a to b is negative.
@@ -55,7 +55,7 @@ public:
         std::vector<int> owners;
         for (int i = 0; i < size(); ++i) {
             owners.push_back(owner_of(*fields.cut, axis == cut_axis ? i : plane_below(lattice_, cut_axis, x)));
-            if (owners.back() == slabs().rank()) own[static_cast<std::size_t>(i)] = at(i);
+            if (owners.back() == communicator().rank()) own[static_cast<std::size_t>(i)] = at(i);
         }
         known_ = of_owners(own, owners);
     }
@@ -81,7 +81,7 @@ struct OwnCells {
     explicit OwnCells(const FieldSet& fields) : end(Lattice::of_cells(fields.grid).n) {
         if (!fields.cut) return;
         const auto across = static_cast<std::size_t>(fields.grid.dim - 1);
-        begin[across] = fields.cut->begin(slabs().rank()), end[across] = fields.cut->end(slabs().rank(), end[across]);
+        begin[across] = fields.cut->begin(communicator().rank()), end[across] = fields.cut->end(communicator().rank(), end[across]);
     }
 };
 

@@ -1,6 +1,6 @@
 #include "sim/wall_fit.hpp"
 
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/sampling.hpp"
 
 #include <Eigen/Dense>
@@ -80,8 +80,8 @@ std::vector<Sample<D>> cells_beside(const FieldSet& fields, const geometry::Soli
     auto [lo, hi] = box_around(lattice, wall, reach);
     std::array<int, 3> I{};
     if (fields.cut) {
-        lo[D - 1] = std::max(lo[D - 1], fields.cut->begin(slabs().rank()));
-        hi[D - 1] = std::min(hi[D - 1], fields.cut->end(slabs().rank(), lattice.n[D - 1]));
+        lo[D - 1] = std::max(lo[D - 1], fields.cut->begin(communicator().rank()));
+        hi[D - 1] = std::min(hi[D - 1], fields.cut->end(communicator().rank(), lattice.n[D - 1]));
     }
     for (I[2] = lo[2]; I[2] < hi[2]; ++I[2])
         for (I[1] = lo[1]; I[1] < hi[1]; ++I[1])

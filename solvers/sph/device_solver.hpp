@@ -1,6 +1,6 @@
 // Smoothed particle hydrodynamics with the whole step on a device: the same passes as SphSolver, over the same text of the pair physics.
 #pragma once
-#include "particles/device_solver.hpp"
+#include "particles/opencl/device_solver.hpp"
 #include "sph/method.hpp"
 
 namespace weir::sph {

@@ -1,6 +1,6 @@
 // The registration of "sph": its keys, effects and factory.
-#include "particles/kind.hpp"
-#include "particles/traffic.hpp"
+#include "particles/state/kind.hpp"
+#include "particles/ranks/traffic.hpp"
 #include "sph/device_solver.hpp"
 #include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
@@ -116,11 +116,7 @@ scene::SolverKind kind() {
         particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"time.cfl"}}, {surface()}),
         particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
         particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"}),
-        particles::refuse_in_parallel,
-        scene::Shared::by_particles,
-        {},
-        {},
-        traffic_of_step};
+        {.check = particles::refuse_in_parallel, .shared = scene::Shared::by_particles, .traffic = traffic_of_step}};
 }
 
 }  // namespace weir::sph

@@ -1,8 +1,8 @@
 // The part of smoothed particle hydrodynamics common to all backends: options, rest density and initial pressure, advised and stable steps,
 // additions to fields and checkpoints. The step itself: solver.cpp, reference_solver.cpp, device_solver.cpp.
 #pragma once
-#include "particles/solver.hpp"
-#include "particles/squeezed.hpp"
+#include "particles/boundaries/squeezed.hpp"
+#include "particles/state/solver.hpp"
 #include "sph/options.hpp"
 #include "sph/state.hpp"
 

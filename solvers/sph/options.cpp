@@ -1,7 +1,7 @@
 #include "sph/options.hpp"
 
-#include "particles/passes.hpp"
-#include "particles/vapour.hpp"
+#include "particles/heat/vapour.hpp"
+#include "particles/threads/passes.hpp"
 
 #include <algorithm>
 

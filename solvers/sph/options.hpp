@@ -1,7 +1,7 @@
 // The options of an SPH scene, and the parameters of the pair physics derived from them.
 #pragma once
 #include "geometry/sides.hpp"
-#include "particles/scheme.hpp"
+#include "particles/state/scheme.hpp"
 
 namespace weir::sph {
 
@@ -25,8 +25,8 @@ struct Options : particles::Scheme {
     std::array<real, 18> slide{};  // velocities of these walls
 
     Options() : Scheme{particles::Smoothing::wendland, 4} {}
-    /// fastest: the estimated maximum speed of the scene [m/s] (particles/fastest_flow.hpp). The default speed of sound is ten times that,
-    /// or 10 m/s where there is no estimate.
+    /// fastest: the estimated maximum speed of the scene [m/s] (particles/state/fastest_flow.hpp). The default speed of sound is ten times
+    /// that, or 10 m/s where there is no estimate.
     Options(const scene::Scene& scene, real fastest);
     /// p = c^2 (rho - rho0), or B ((rho / rho0)^gamma - 1) with B = c^2 rho0 / gamma (Monaghan 1994).
     real pressure(real rho, real rho0) const;

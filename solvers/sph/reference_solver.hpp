@@ -1,7 +1,7 @@
 // Smoothed particle hydrodynamics in plain double precision over all pairs on one thread: the step of SphSolver in its simplest form, the
 // reference for every backend. Its passes allocate their results.
 #pragma once
-#include "particles/reference_solver.hpp"
+#include "particles/reference/reference_solver.hpp"
 #include "sph/method.hpp"
 
 namespace weir::sph {

@@ -1,6 +1,6 @@
 #include "sph/rest.hpp"
 
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Finds the liquid of a scene that starts at rest: sets of particles with a flat top, supported by walls or solids below and beside. Its
 // initial pressure is hydrostatic; a column that starts without pressure would fall and oscillate acoustically.
 #pragma once
-#include "particles/fluid.hpp"
+#include "particles/state/fluid.hpp"
 
 #include <string>
 

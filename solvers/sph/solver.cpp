@@ -1,6 +1,6 @@
 #include "sph/solver.hpp"
 
-#include "particles/fastest_flow.hpp"
+#include "particles/state/fastest_flow.hpp"
 #include "sph/tension.hpp"
 
 #include <algorithm>

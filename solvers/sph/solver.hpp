@@ -1,7 +1,7 @@
 // Smoothed particle hydrodynamics (Müller, Charypar & Gross 2003; weakly compressible) in two and three dimensions, on the same base as
 // PBF: density, equation of state, forces, symplectic integration.
 #pragma once
-#include "particles/threaded_solver.hpp"
+#include "particles/threads/threaded_solver.hpp"
 #include "scene/solver_kind.hpp"
 #include "sph/method.hpp"
 

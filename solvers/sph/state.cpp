@@ -1,7 +1,7 @@
 #include "sph/state.hpp"
 
 #include "core/parallel.hpp"
-#include "particles/flow.hpp"
+#include "particles/state/flow.hpp"
 #include "sph/rest.hpp"
 
 #include <fmt/format.h>

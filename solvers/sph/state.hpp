@@ -2,9 +2,9 @@
 // limits.
 #pragma once
 #include "core/parallel.hpp"
-#include "particles/bodies_in_liquid.hpp"
-#include "particles/fluid.hpp"
-#include "particles/passes.hpp"
+#include "particles/boundaries/bodies_in_liquid.hpp"
+#include "particles/state/fluid.hpp"
+#include "particles/threads/passes.hpp"
 #include "sph/options.hpp"
 
 #include <string>

@@ -1,7 +1,7 @@
 // Surface tension as an effect: two pair passes, one for the surface normals and one for the stress (kernels/sph_pair.inl).
 #pragma once
-#include "particles/flow.hpp"
-#include "particles/solid_terms.hpp"
+#include "particles/boundaries/solid_terms.hpp"
+#include "particles/state/flow.hpp"
 #include "sph/options.hpp"
 
 namespace weir::sph {

@@ -1,9 +1,9 @@
 #include "studies/kinds.hpp"
 
+#include "mac/grid/initial.hpp"
+#include "mac/grid/kind.hpp"
 #include "matter/substance.hpp"
 #include "scene/surface_keys.hpp"
-#include "staggered/initial.hpp"
-#include "staggered/kind.hpp"
 #include "studies/closed_vessel.hpp"
 #include "studies/phase_diagram.hpp"
 #include "studies/poisson_problem.hpp"
@@ -18,6 +18,7 @@ using scene::Type;
 scene::SolverKind transport_kind() {
     scene::SolverSchema schema;
     schema.name = "transport";
+    schema.study = true;
     schema.doc = "Cell fields carried by a prescribed velocity, to measure advection schemes.";
     schema.keys = {scheme_key(AdvectionOptions::keys()), PrescribedFlow<2>::key(), initial_keys({"level_set", "tracer"})};
     schema.without = {"time.stop_when_steady", "fluid", "solids", "emitters", "initial.velocity"};
@@ -31,6 +32,7 @@ scene::SolverKind poisson_kind() {
     problem.example = "problem = \"N1\"";
     scene::SolverSchema schema;
     schema.name = "poisson";
+    schema.study = true;
     schema.doc = "One manufactured pressure problem on the unit square or cube, solved in one step.";
     schema.keys = {scheme_key({PoissonChoice::key()}), problem};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial"};
@@ -40,6 +42,7 @@ scene::SolverKind poisson_kind() {
 scene::SolverKind phase_diagram_kind() {
     scene::SolverSchema schema;
     schema.name = "phase_diagram";
+    schema.study = true;
     schema.doc = "A substance in the plane of temperature (x, in K) and pressure (y, its decimal logarithm, in Pa), without any flow.";
     schema.dims = {2};
     schema.keys = {matter::substance_key(), PhaseDiagram::samples_key()};
@@ -53,6 +56,7 @@ scene::SolverKind reconstruction_kind() {
     output.keys[0].example = "output.surface = \"zhu_bridson\"";
     scene::SolverSchema schema;
     schema.name = "reconstruction";
+    schema.study = true;
     schema.doc = "Particles at rest on a lattice, and their surface: to measure surface reconstruction.";
     schema.dims = {2, 3};
     schema.keys = {output, ReconstructionStudy::jitter_key()};
@@ -64,6 +68,7 @@ scene::SolverKind reconstruction_kind() {
 scene::SolverKind closed_vessel_kind() {
     scene::SolverSchema schema;
     schema.name = "closed_vessel";
+    schema.study = true;
     schema.doc = "Water and its vapour in a rigid vessel, without flow: the gas has one pressure, and comes to that of saturation.";
     schema.dims = {2};
     schema.keys = ClosedVessel::keys();

@@ -1,6 +1,6 @@
 #include "studies/poisson_problem.hpp"
 
-#include "staggered/diagnostics.hpp"
+#include "mac/grid/diagnostics.hpp"
 
 #include <cmath>
 

@@ -3,16 +3,16 @@
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
+#include "mac/grid/projection.hpp"
+#include "mac/grid/velocity.hpp"
 #include "poisson/poisson.hpp"
 #include "scene/scene.hpp"
-#include "staggered/projection.hpp"
-#include "staggered/velocity.hpp"
 
 #include <memory>
 
 namespace weir::studies {
 
-using namespace staggered;  // the grid's words are the solver's own
+using namespace mac;  // the grid's words are the solver's own
 
 /// A right-hand side on the unit square or cube, by name.
 struct ManufacturedProblem {

@@ -1,14 +1,14 @@
 // Velocities as functions of position and time, for advection tests.
 #pragma once
+#include "mac/advection/trace.hpp"
+#include "mac/grid/velocity.hpp"
 #include "scene/scene.hpp"
-#include "staggered/trace.hpp"
-#include "staggered/velocity.hpp"
 
 #include <array>
 
 namespace weir::studies {
 
-using namespace staggered;  // the grid's words are the solver's own
+using namespace mac;  // the grid's words are the solver's own
 
 /// A velocity by name. All except "constant" are defined on the unit square or cube.
 template <int D>

@@ -1,7 +1,7 @@
 #include "studies/reconstruction_study.hpp"
 
 #include "geometry/shape.hpp"
-#include "reconstruction/measure.hpp"
+#include "surfaces/measure.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -29,7 +29,7 @@ scene::Key ReconstructionStudy::jitter_key() {
             .max = 0.5};
 }
 
-ReconstructionStudy::ReconstructionStudy(const scene::Scene& scene) : maker_(reconstruction::reconstruction_of(scene)) {
+ReconstructionStudy::ReconstructionStudy(const scene::Scene& scene) : maker_(surfaces::reconstruction_of(scene)) {
     scene.dim() == 2 ? fill<2>(scene) : fill<3>(scene);
     maker_->make(fields(), 0);
 }
@@ -84,8 +84,8 @@ std::vector<Integral> ReconstructionStudy::integrals() const {
     const SurfaceMesh& mesh = maker_->mesh();
     const bool flat = grid_.dim == 2;  // area and length, for lines
     return {{"particles", "1", static_cast<real>(x_[0].size())},
-            {"surface_volume", flat ? "m^2" : "m^3", reconstruction::volume(mesh)},
-            {"surface_area", flat ? "m" : "m^2", reconstruction::area(mesh)},
+            {"surface_volume", flat ? "m^2" : "m^3", surfaces::volume(mesh)},
+            {"surface_area", flat ? "m" : "m^2", surfaces::area(mesh)},
             {flat ? "lines" : "triangles", "1", static_cast<real>(mesh.corners.size() + mesh.lines.size())}};
 }
 

@@ -2,8 +2,8 @@
 // measure it and its cost.
 #pragma once
 #include "core/solver.hpp"
-#include "reconstruction/reconstruction.hpp"
 #include "scene/scene.hpp"
+#include "surfaces/reconstruction.hpp"
 
 #include <array>
 #include <memory>
@@ -33,7 +33,7 @@ private:
     void fill(const scene::Scene& scene);
 
     std::array<std::vector<real>, 3> x_;  // in a plane only two are used
-    std::unique_ptr<reconstruction::Reconstruction> maker_;
+    std::unique_ptr<surfaces::Reconstruction> maker_;
     real time_ = 0;
 };
 

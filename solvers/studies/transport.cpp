@@ -1,7 +1,7 @@
 #include "studies/transport.hpp"
 
-#include "staggered/diagnostics.hpp"
-#include "staggered/initial.hpp"
+#include "mac/grid/diagnostics.hpp"
+#include "mac/grid/initial.hpp"
 
 namespace weir::studies {
 

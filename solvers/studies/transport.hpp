@@ -2,9 +2,9 @@
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
-#include "staggered/advection.hpp"
-#include "staggered/conservative.hpp"
-#include "staggered/state.hpp"
+#include "mac/advection/advection.hpp"
+#include "mac/advection/conservative.hpp"
+#include "mac/grid/state.hpp"
 #include "studies/prescribed_flow.hpp"
 
 #include <optional>

@@ -32,7 +32,7 @@ void ColumnMatrix::finish() {
         wrap_line(*this, z, beside_next[0].data());
     });
     resize_scratch(looks_, row.size() * (cut.empty() ? 1 : static_cast<std::size_t>(cut.ranks())));
-    Look* here = looks_.data() + (cut.empty() ? 0 : row.size() * static_cast<std::size_t>(slabs().rank()));
+    Look* here = looks_.data() + (cut.empty() ? 0 : row.size() * static_cast<std::size_t>(communicator().rank()));
     parallel_for(0, rows, [&](int k) { here[k] = {look_beside(k), any_inside(k)}; });
     join_looks();
     resize_scratch(alike, row.size());
@@ -89,7 +89,7 @@ void ColumnMatrix::join_looks() {
     if (cut.empty()) return;
     std::vector<std::size_t> begins;
     for (int r = 0; r <= cut.ranks(); ++r) begins.push_back(static_cast<std::size_t>(r) * row.size());
-    slabs().gather_parts(looks_.data(), sizeof(Look), begins);
+    communicator().gather_parts(looks_.data(), sizeof(Look), begins);
     for (std::size_t i = row.size(); i < looks_.size(); ++i) {
         Look& all = looks_[i % row.size()];
         all.inside |= looks_[i].inside;

@@ -6,8 +6,8 @@
 // with T and W tridiagonal, without any index search. Coarser columns keep the shared rows, so their matrices are plain sums.
 #pragma once
 #include "core/parallel.hpp"
-#include "core/plane_store.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
+#include "parallel/plane_store.hpp"
 #include "tallcell/columns.hpp"
 
 #include <algorithm>
@@ -36,7 +36,9 @@ struct ColumnPlaces {
     bool operator==(const ColumnPlaces&) const = default;
     int blocks_of_line() const { return (static_cast<int>(line_stride()) + block - 1) / block; }
     /// The lines that this rank owns.
-    LineRange own() const { return cut.empty() ? LineRange{0, n[1]} : LineRange{cut.begin(slabs().rank()), cut.end(slabs().rank(), n[1])}; }
+    LineRange own() const {
+        return cut.empty() ? LineRange{0, n[1]} : LineRange{cut.begin(communicator().rank()), cut.end(communicator().rank(), n[1])};
+    }
     /// In parallel the line after these, whose faces towards them they own too; −1 where there is none.
     int beyond() const {
         if (cut.empty()) return -1;
@@ -113,7 +115,7 @@ Planes lines_of(const ColumnPlaces& places, LineStore<T>& values) {
 /// In parallel, fills one ghost line on each side.
 template <class T>
 void refresh_lines(const ColumnPlaces& places, LineStore<T>& values) {
-    if (!places.cut.empty()) slabs().refresh(places.cut, lines_of(places, values), 1, places.periodic[1]);
+    if (!places.cut.empty()) communicator().refresh(places.cut, lines_of(places, values), 1, places.periodic[1]);
 }
 
 /// Strides from the entry of a column to those of its neighbours.

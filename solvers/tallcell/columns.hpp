@@ -2,9 +2,9 @@
 // consecutive rows form the uniform grid. Two knots H − 1 rows apart are the bottom and the top of a tall cell of H rows (Chentanez &
 // Müller 2011); several such elements on top of each other form a stacked column.
 #pragma once
-#include "core/grid.hpp"
 #include "core/parallel.hpp"
 #include "core/types.hpp"
+#include "parallel/grid.hpp"
 #include "poisson/poisson.hpp"
 
 #include <array>

@@ -53,7 +53,7 @@ Parts<N> parts_of_lines(const ColumnPlaces& places, F&& f) {
         const std::array<real, N> found = f(begin, end);
         std::copy(found.begin(), found.end(), parts.begin() + static_cast<std::ptrdiff_t>(at(i) * N));
     });
-    if (!places.cut.empty()) slabs().gather(places.cut, {parts.data(), N * sizeof(real) * at(blocks), places.n[1]});
+    if (!places.cut.empty()) communicator().gather(places.cut, {parts.data(), N * sizeof(real) * at(blocks), places.n[1]});
     return {parts, count};
 }
 
@@ -107,7 +107,7 @@ real multiply_and_dot(const ColumnMatrix& A, LineStore<real>& x, LineStore<real>
             }
         parts[at(z)] = dot;
     });
-    if (!A.cut.empty()) slabs().gather(A.cut, {parts.data(), sizeof(real), A.n[1]});
+    if (!A.cut.empty()) communicator().gather(A.cut, {parts.data(), sizeof(real), A.n[1]});
     return detail::sum_in_order(parts, A.n[1]);
 }
 

@@ -1,11 +1,11 @@
 #include "tallcell/kind.hpp"
 
-#include "core/traffic.hpp"
 #include "geometry/brush.hpp"
+#include "mac/grid/initial.hpp"
+#include "mac/grid/kind.hpp"
+#include "parallel/traffic.hpp"
 #include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
-#include "staggered/initial.hpp"
-#include "staggered/kind.hpp"
 #include "tallcell/solver.hpp"
 
 namespace weir::tallcell {
@@ -88,24 +88,22 @@ scene::SolverKind kind() {
                    initial_keys(),
                    scene::surface_key_of_level_set(false)};
     schema.effects = schemas_of(body_forces());
-    schema.effects.push_back(surface::volume_control());
+    schema.effects.push_back(free_surface::volume_control());
     schema.effects.push_back(geometry::brush_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
-    scene::SolverKind tall{
-        schema,
-        staggered::make<TallCells>,
-        {{"velocity", "pressure", "level_set", "cell_height"},
-         {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
-         "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-        check_parallel,
-        scene::Shared::by_planes,
-        [](const scene::Scene&, const Cut&) {
-            return "the levels of the pressure of fewer than 20,000 unknowns, extrapolation of the level set into solids";
-        }};
-    tall.holds_own_part = holds_own_planes;
-    tall.sends = traffic_of_step;
-    tall.cut = cut_of_columns;
-    return tall;
+    return {schema,
+            mac::make<TallCells>,
+            {{"velocity", "pressure", "level_set", "cell_height"},
+             {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+            {.check = check_parallel,
+             .replicated_work =
+                 [](const scene::Scene&, const Cut&) {
+                     return "the levels of the pressure of fewer than 20,000 unknowns, extrapolation of the level set into solids";
+                 },
+             .distributed_storage = holds_own_planes,
+             .traffic = traffic_of_step,
+             .partition = cut_of_columns}};
 }
 
 }  // namespace weir::tallcell

@@ -1,10 +1,10 @@
 // The schema of the solver "tallcell".
 #pragma once
-#include "staggered/effects.hpp"
+#include "mac/grid/effects.hpp"
 
 namespace weir::tallcell {
 
-using namespace staggered;
+using namespace mac;
 
 /// Forces on the bulk of the liquid, applied between momentum and pressure.
 const EffectKinds& body_forces();

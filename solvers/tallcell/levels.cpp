@@ -51,9 +51,9 @@ void ColumnMultigrid::coarsen(const ColumnMatrix& A, ColumnMatrix& to) {
     });
     if (const int beyond = to.beyond(); beyond >= 0) add_lower_faces(A, to, beyond);
     if (gathered) {
-        slabs().gather(to.cut, lines_of(to, to.state));
+        communicator().gather(to.cut, lines_of(to, to.state));
         for (auto* list : to.lists())
-            if (list != &to.share) slabs().gather(to.cut, lines_of(to, *list));
+            if (list != &to.share) communicator().gather(to.cut, lines_of(to, *list));
         to.share.fill(0);
         to.cut = {};
     }

@@ -160,7 +160,7 @@ void ColumnMultigrid::restrict_residual(const ColumnMatrix& A, const Level& leve
             for (int begin = 0; begin < coarse.of_parity(parity); begin += lanes)
                 gather(coarse, Z, parity, begin, std::min(begin + lanes, coarse.of_parity(parity)), next.b.data());
     });
-    if (!A.cut.empty() && coarse.cut.empty()) slabs().gather(parents.cut, lines_of(coarse, next.b));
+    if (!A.cut.empty() && coarse.cut.empty()) communicator().gather(parents.cut, lines_of(coarse, next.b));
 }
 
 /// x += P x of the parents; in parallel also on ghost lines, where x of children and parents is known.

@@ -2,7 +2,7 @@
 // three nearest samples (or two, for faces of another kind) along each axis, with hat functions as weights. So all loads are contiguous.
 #pragma once
 #include "core/simd.hpp"
-#include "staggered/velocity.hpp"
+#include "mac/grid/velocity.hpp"
 
 #include <array>
 #include <type_traits>

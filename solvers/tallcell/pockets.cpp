@@ -74,7 +74,7 @@ void Pockets::number_knots(const ColumnMatrix& A, const Knots& knots) {
     refill_scratch(firsts_, at(A.n[1]), 0);
     Ints& first = firsts_;
     for (int z = own_.begin; z < own_.end; ++z) first[at(z)] = end_[at(z)] - begin_[at(z)];
-    if (!A.cut.empty()) slabs().gather(A.cut, {first.data(), sizeof(int), A.n[1]});
+    if (!A.cut.empty()) communicator().gather(A.cut, {first.data(), sizeof(int), A.n[1]});
     std::exclusive_scan(first.begin(), first.end(), first.begin(), 0);
     resize_scratch(number_, at(knots.count()));
     for (int z = 0; z < A.n[1]; ++z)
@@ -145,7 +145,7 @@ void Pockets::sum_up(F&& of, std::vector<real>& sums) const {
     for (int z = own_.begin; z < own_.end; ++z)
         for (std::size_t i = at(begin_[at(z)]); i < at(end_[at(z)]); ++i)
             if (pocket_[i] >= 0) by_line_[at(z) * pockets + at(pocket_[i])] += mass_[i] * of(i);
-    if (!places_.cut.empty()) slabs().gather(places_.cut, {by_line_.data(), sizeof(real) * pockets, places_.n[1]});
+    if (!places_.cut.empty()) communicator().gather(places_.cut, {by_line_.data(), sizeof(real) * pockets, places_.n[1]});
     refill_scratch<real>(sums, pockets, 0);
     for (std::size_t i = 0; i < by_line_.size(); ++i) sums[i % pockets] += by_line_[i];
 }

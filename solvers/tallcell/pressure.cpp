@@ -70,14 +70,14 @@ void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>
 template <int D>
 void TallPressure<D>::agree_on_rows() {
     if (!is_distributed()) return;
-    const std::size_t rows = row_index_.size(), count = rows + 2, ranks = static_cast<std::size_t>(slabs().ranks());
+    const std::size_t rows = row_index_.size(), count = rows + 2, ranks = static_cast<std::size_t>(communicator().ranks());
     resize_scratch(rows_of_ranks_, count * ranks);
-    const auto own = rows_of_ranks_.begin() + static_cast<std::ptrdiff_t>(count * static_cast<std::size_t>(slabs().rank()));
+    const auto own = rows_of_ranks_.begin() + static_cast<std::ptrdiff_t>(count * static_cast<std::size_t>(communicator().rank()));
     std::copy(row_index_.begin(), row_index_.end(), own);
     own[layout_.rows] = elements_end_, own[layout_.rows + 1] = -floor_;
     std::vector<std::size_t> begins;
     for (std::size_t r = 0; r <= ranks; ++r) begins.push_back(r * count);
-    slabs().gather_parts(rows_of_ranks_.data(), sizeof(int), begins);
+    communicator().gather_parts(rows_of_ranks_.data(), sizeof(int), begins);
     for (std::size_t r = 0; r < ranks; ++r) {
         const int* of_rank = rows_of_ranks_.data() + r * count;
         for (std::size_t row = 0; row < rows; ++row) row_index_[row] = std::max(row_index_[row], of_rank[row]);

@@ -4,8 +4,8 @@
 // projection the vertical velocity inside elements is rebuilt from the bottom up, so that every cell is divergence-free. In parallel each
 // rank owns lines of columns, their faces towards the line after them, and has the knots of one ghost line on each side.
 #pragma once
-#include "staggered/state.hpp"
-#include "surface/level_set.hpp"
+#include "free_surface/level_set.hpp"
+#include "mac/grid/state.hpp"
 #include "tallcell/multigrid.hpp"
 #include "tallcell/pockets.hpp"
 #include "tallcell/samples.hpp"
@@ -14,7 +14,7 @@
 
 namespace weir::tallcell {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Cells with a thinner layer of liquid, relative to h, have no unknown: this bounds 1/θ by 1 + 1/thinnest, as on the uniform grid.
 inline constexpr real thinnest = 0.02;

@@ -12,7 +12,7 @@ Cut cut_of_columns(const scene::Scene& scene, int ranks) {
     return lines >= ranks && !pairs ? Cut{} : cut_of(lines, ranks);
 }
 
-bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !slabs().holds_whole(); }
+bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
 /// Halo exchange of the velocity, as deep as the motion of the step plus the two samples at the end of a trajectory; runs of one ghost line
 /// move too.
@@ -53,7 +53,7 @@ void TallCells<D>::fill_ghosts() const {
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all{planes_of(state.p), planes_of(tall_)};
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    slabs().refresh(held_.cut(), all, 2, held_.ring());
+    communicator().refresh(held_.cut(), all, 2, held_.ring());
     whole_ = true;
 }
 

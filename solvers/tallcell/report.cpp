@@ -1,7 +1,7 @@
 // Output and steering of liquid on tall cells: fields, integrals, checkpoints, an edited velocity.
+#include "free_surface/measure.hpp"
 #include "geometry/brush.hpp"
-#include "staggered/diagnostics.hpp"
-#include "surface/measure.hpp"
+#include "mac/grid/diagnostics.hpp"
 #include "tallcell/solver.hpp"
 
 namespace weir::tallcell {

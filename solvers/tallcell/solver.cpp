@@ -1,8 +1,8 @@
 #include "tallcell/solver.hpp"
 
 #include "core/error.hpp"
-#include "staggered/closed_volume.hpp"
-#include "staggered/inflow.hpp"
+#include "mac/grid/closed_volume.hpp"
+#include "mac/grid/inflow.hpp"
 
 namespace weir::tallcell {
 
@@ -24,7 +24,7 @@ StepReport TallCells<D>::step(real dt) {
     forces(kick);                                   // u += dt f
     const poisson::Report poisson = project(kick);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
     const real divergence = pressure_.max_divergence(state_);
-    staggered::require_room(state_, solids_, divergence);
+    mac::require_room(state_, solids_, divergence);
     extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
     leapfrog_.finish(state_.u, kick);
     if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "a velocity is no longer finite");
@@ -151,7 +151,7 @@ poisson::Report TallCells<D>::project(real dt) {
     pressure_.restrict_velocity(state_);
     pressure_.change_runs(transport_.changes());
     const poisson::Report report =
-        staggered::explained_by_room(state_, solids_, [&] { return pressure_.project(surface_.phi, state_, dt, solids_.moving()); });
+        mac::explained_by_room(state_, solids_, [&] { return pressure_.project(surface_.phi, state_, dt, solids_.moving()); });
     pressure_.spread(state_, dt);
     sync_periodic(state_.u, state_.sides);
     return report;

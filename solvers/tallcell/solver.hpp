@@ -4,15 +4,15 @@
 // their reasons: docs/adr/0016-tall-cells.md.
 #pragma once
 #include "core/effects.hpp"
-#include "core/held_planes.hpp"
 #include "core/solver.hpp"
+#include "free_surface/extrapolate.hpp"
+#include "free_surface/leapfrog.hpp"
+#include "free_surface/solid_faces.hpp"
+#include "free_surface/start.hpp"
+#include "free_surface/volume_fraction.hpp"
+#include "mac/bodies/solid_faces.hpp"
+#include "parallel/held_planes.hpp"
 #include "scene/solver_kind.hpp"
-#include "staggered/solid_faces.hpp"
-#include "surface/extrapolate.hpp"
-#include "surface/leapfrog.hpp"
-#include "surface/solid_faces.hpp"
-#include "surface/start.hpp"
-#include "surface/volume_fraction.hpp"
 #include "tallcell/transport.hpp"
 
 namespace weir::tallcell {

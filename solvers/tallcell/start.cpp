@@ -1,9 +1,9 @@
 // Initial state of a scene with tall cells, and its unsupported combinations.
-#include "surface/start.hpp"
+#include "free_surface/start.hpp"
 #include "geometry/brush.hpp"
+#include "mac/grid/effects.hpp"
+#include "mac/grid/initial.hpp"
 #include "scene/names.hpp"
-#include "staggered/effects.hpp"
-#include "staggered/initial.hpp"
 #include "tallcell/kind.hpp"
 #include "tallcell/solver.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 /// Depth of the velocity's halo: the motion of a step plus the interpolation stencil.
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, real cfl) {
-    const Cut cut = cut_of_columns(scene, slabs().ranks());
+    const Cut cut = cut_of_columns(scene, communicator().ranks());
     return HeldPlanes(cut, holds_own_planes(scene, cut), static_cast<int>(std::ceil(cfl)) + 3, geometry::Sides<D>(scene).periodic(D - 1));
 }
 

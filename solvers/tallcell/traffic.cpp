@@ -1,7 +1,7 @@
 // Estimate of what a rank sends in a step of the solver "tallcell": the exchanges of solver.cpp and of surface/, pass by pass.
-#include "core/traffic.hpp"
+#include "parallel/traffic.hpp"
+#include "free_surface/traffic.hpp"
 #include "geometry/liquid_fraction.hpp"
-#include "surface/traffic.hpp"
 #include "tallcell/solver.hpp"
 
 #include <cmath>
@@ -69,9 +69,9 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     }
     const TallOptions options(scene);
     const geometry::Sides<3> sides(scene);
-    const staggered::Lattice<3> lattice(scene);
+    const mac::Lattice<3> lattice(scene);
     const Index<3>& n = lattice.cells;
-    const surface::SurfaceTally<3> surface(n, lattice.h, scene.number("time.cfl"), sides.periodic(2));
+    const free_surface::SurfaceTally<3> surface(n, lattice.h, scene.number("time.cfl"), sides.periodic(2));
     const auto &cells = surface.cells, &across = surface.faces[2];
     Tally tally(cut, of.rank, sides.periodic(2));
     const int up = up_axis<3>(gravity_of<3>(scene));

@@ -2,7 +2,7 @@
 // of the lattice velocity. Regular faces are advected as on the uniform grid. Inside tall cells the moments over each run are advected: its
 // end rows, into which neighbouring runs are transported, and Gauss points between them represent all rows.
 #pragma once
-#include "surface/marker_motion.hpp"
+#include "free_surface/marker_motion.hpp"
 #include "tallcell/near_rows.hpp"
 #include "tallcell/pressure.hpp"
 

@@ -6,17 +6,17 @@
 //     ½ Σ_walls w (1/θ − 1) (u − J V)²/h²  added to the weak form,      M δV + ρ ΔV dt ν ∂/∂V = R:  a body's own row
 //
 // J is evaluated at the face itself, so liquid and body in common rotation have no strain. Momentum and angular momentum are conserved
-// between body and liquid. M, R: staggered/no_slip_walls.hpp.
+// between body and liquid. M, R: mac/bodies/no_slip_walls.hpp.
 #pragma once
-#include "staggered/no_slip_walls.hpp"
-#include "staggered/state.hpp"
+#include "mac/bodies/no_slip_walls.hpp"
+#include "mac/grid/state.hpp"
 
 #include <array>
 #include <vector>
 
 namespace weir::water {
 
-using namespace staggered;
+using namespace mac;
 
 /// All rows are divided by ρ ΔV, as the liquid's are.
 template <int D>

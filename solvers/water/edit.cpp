@@ -1,7 +1,7 @@
 // Steering a liquid between two steps: editing its velocity, adding and removing markers. Invariants restored afterwards: a velocity with
 // ∇·u = 0 that satisfies the conditions of walls and solids and is known throughout the band; the momentum on markers; a level set that
 // contains the markers; the volume balance.
-#include "staggered/inflow.hpp"
+#include "mac/grid/inflow.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {

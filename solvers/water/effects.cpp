@@ -1,7 +1,7 @@
 #include "water/effects.hpp"
 
+#include "free_surface/start.hpp"
 #include "geometry/brush.hpp"
-#include "surface/start.hpp"
 
 namespace weir::water {
 
@@ -33,7 +33,7 @@ std::vector<scene::Variant> effect_schemas() {
                                              .fallback = std::string("crank-nicolson"),
                                              .choices = {"crank-nicolson", "implicit"}}},
                                            {"fluid.viscosity"}},
-                                          surface::volume_control()};
+                                          free_surface::volume_control()};
     list.insert(list.end(), own.begin(), own.end());
     list.push_back(geometry::brush_schema());
     return list;

@@ -1,11 +1,11 @@
 // The effects of the solver "mac_water" by name.
 #pragma once
-#include "staggered/effects.hpp"
-#include "surface/frame.hpp"
+#include "free_surface/frame.hpp"
+#include "mac/grid/effects.hpp"
 
 namespace weir::water {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Forces on the bulk of the liquid, applied between momentum and pressure.
 const EffectKinds& body_forces();

@@ -1,15 +1,15 @@
 // Emitters of liquid: regions with a prescribed velocity, like an inflow. The pressure solve treats them as nozzles: a flux of area times
 // speed through the front faces, and closed faces behind and beside. So the surrounding liquid is neither sucked in nor pushed aside.
 #pragma once
+#include "free_surface/frame.hpp"
 #include "geometry/shape.hpp"
-#include "surface/frame.hpp"
 
 #include <array>
 #include <vector>
 
 namespace weir::water {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 template <int D>
 struct Emitter {

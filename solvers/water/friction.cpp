@@ -9,7 +9,7 @@
 // liquids (Larionov et al. 2017).
 #include "water/solver.hpp"
 
-#include "staggered/inflow.hpp"
+#include "mac/grid/inflow.hpp"
 
 namespace weir::water {
 

@@ -2,10 +2,10 @@
 
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
+#include "mac/grid/initial.hpp"
 #include "matter/heat.hpp"
 #include "matter/substance.hpp"
 #include "scene/names.hpp"
-#include "staggered/initial.hpp"
 
 #include <algorithm>
 

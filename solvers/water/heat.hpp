@@ -1,5 +1,5 @@
 // Heat in a liquid with a free surface. The specific enthalpy H of cells is advected (semi-Lagrangian), conducted between liquid cells
-// only, and exchanged with sides, heaters and the surface; ice stops the flow (staggered/ice.hpp). The balance is global: the mass follows
+// only, and exchanged with sides, heaters and the surface; ice stops the flow (mac/heat/ice.hpp). The balance is global: the mass follows
 // the volume balance, the heat is that mass times the mean of H over the cells. Semi-Lagrangian advection does not conserve that mean, so
 // it is corrected afterwards in the cells where H has changed. Evaporating liquid removes its own enthalpy and the heat of evaporation,
 // which is taken from the surface cells:
@@ -8,18 +8,18 @@
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/solver.hpp"
+#include "free_surface/level_set.hpp"
+#include "mac/heat/conduction.hpp"
+#include "mac/heat/heat_supply.hpp"
+#include "mac/heat/ice.hpp"
 #include "matter/closed_gas.hpp"
-#include "staggered/conduction.hpp"
-#include "staggered/heat_supply.hpp"
-#include "staggered/ice.hpp"
-#include "surface/level_set.hpp"
 
 #include <optional>
 #include <vector>
 
 namespace weir::water {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 template <int D>
 class LiquidHeat {

@@ -1,11 +1,11 @@
 // The schema of the solver "mac_water".
-#include "staggered/kind.hpp"
-#include "core/traffic.hpp"
+#include "mac/grid/kind.hpp"
+#include "mac/grid/initial.hpp"
+#include "mac/grid/own_planes.hpp"
 #include "matter/heat.hpp"
+#include "parallel/traffic.hpp"
 #include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
-#include "staggered/initial.hpp"
-#include "staggered/own_planes.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
 
@@ -92,20 +92,20 @@ scene::SolverKind kind() {
     for (Key& key : LiquidHeat<2>::keys()) schema.keys.push_back(std::move(key));
     schema.effects = effect_schemas();
     schema.without = {"sides.*.smoke", "sides.*.profile", "emitters.temperature", "emitters.smoke", "initial.smoke"};
-    scene::SolverKind water{schema,
-                            staggered::make<Water>,
-                            {{"velocity", "pressure", "level_set", "position", "velocity"},
-                             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project",
-                              "extrapolate", "faces to markers"},
-                             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-                            check_parallel};
-    water.holds_own_part = staggered::holds_own_planes;
-    water.work_of_planes = work_of_planes;
-    water.sends = traffic_of_step;
-    water.replicated_work = [](const scene::Scene& scene, const Cut& cut) {
-        return staggered::replicated_pressure(scene, cut) + ", extrapolation of the level set into solids";
-    };
-    return water;
+    return {schema,
+            mac::make<Water>,
+            {{"velocity", "pressure", "level_set", "position", "velocity"},
+             {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
+              "faces to markers"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+            {.check = check_parallel,
+             .replicated_work =
+                 [](const scene::Scene& scene, const Cut& cut) {
+                     return mac::replicated_pressure(scene, cut) + ", extrapolation of the level set into solids";
+                 },
+             .distributed_storage = mac::holds_own_planes,
+             .traffic = traffic_of_step,
+             .work_of_planes = work_of_planes}};
 }
 
 }  // namespace weir::water

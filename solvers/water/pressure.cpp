@@ -1,6 +1,6 @@
 #include "water/pressure.hpp"
 
-#include "surface/marker_lanes.hpp"
+#include "free_surface/marker_lanes.hpp"
 
 #include <algorithm>
 
@@ -54,7 +54,7 @@ template <int D>
 void SurfacePressure<D>::refresh_liquid() {
     if (!is_distributed()) return;
     const std::array<Planes, 2> both{planes_of(A_.cells), planes_of(liquid_)};
-    slabs().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));
+    communicator().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));
 }
 
 /// Sets the cell flags and the extent of liquid on each line; all loops below are limited to that extent.

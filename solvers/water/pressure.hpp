@@ -3,17 +3,17 @@
 // enter by open face fractions (Batty, Bertails & Bridson 2007). A cell is liquid when φ < −thinnest h, so θ ≥ thinnest / (1 + thinnest)
 // without clamping. A plane surface, at any height and slope, has exactly the hydrostatic p.
 #pragma once
+#include "free_surface/level_set.hpp"
+#include "mac/bodies/bodies_in_flow.hpp"
+#include "mac/grid/projection.hpp"
+#include "mac/grid/state.hpp"
 #include "poisson/poisson.hpp"
-#include "staggered/bodies_in_flow.hpp"
-#include "staggered/projection.hpp"
-#include "staggered/state.hpp"
-#include "surface/level_set.hpp"
 
 #include <memory>
 
 namespace weir::water {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Cells with a thinner layer of liquid, relative to h, have no unknown: this bounds 1/θ by 1 + 1/thinnest, and so the condition number.
 inline constexpr real thinnest = 0.02;

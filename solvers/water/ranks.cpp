@@ -70,7 +70,7 @@ void Water<D>::check_own() const {
     markers_.for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
         see(std::isfinite(largest_magnitude(array.data() + begin, count)), number++ < D ? position : velocity);
     });
-    broken = slabs().largest(broken);
+    broken = communicator().largest(broken);
     if (broken == none) return;
     const std::string name = broken == position    ? "position"
                              : broken == pressure  ? "pressure"
@@ -99,7 +99,7 @@ void Water<D>::fill_ghosts() const {
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all{planes_of(state.p)};
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    slabs().refresh(held_.cut(), all, 2, frame_.periodic(D - 1));
+    communicator().refresh(held_.cut(), all, 2, frame_.periodic(D - 1));
     whole_ = true;
 }
 

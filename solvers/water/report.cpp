@@ -1,7 +1,7 @@
 // Output of the liquid: fields, integrals, checkpoints.
+#include "free_surface/measure.hpp"
 #include "geometry/brush.hpp"
-#include "staggered/diagnostics.hpp"
-#include "surface/measure.hpp"
+#include "mac/grid/diagnostics.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
@@ -84,7 +84,7 @@ void Water<D>::save(Checkpoint& to) const {
     int at = 0;
     markers_.for_each_array([&, begin = first, count = last - first](const std::vector<real>& array) {
         to.put_part("water.markers." + std::to_string(at++), std::span(array).subspan(begin, count),
-                    begins[static_cast<std::size_t>(slabs().rank())], begins.back());
+                    begins[static_cast<std::size_t>(communicator().rank())], begins.back());
     });
     const std::array<real, 3> reals{volume_target_, markers_.volume, volume_shift_};
     to.put_value("water.reals", reals);
@@ -102,7 +102,7 @@ void Water<D>::restore_markers(const Checkpoint& from) {
     markers_.for_each_array([&](std::vector<real>& array) {
         const std::string name = "water.markers." + std::to_string(at++);
         Checkpoint::Held held = from.held<real>(name);
-        if (!held.part) held = held.share(slabs().rank(), slabs().ranks());
+        if (!held.part) held = held.share(communicator().rank(), communicator().ranks());
         array.resize(held.end - held.begin);
         from.get_part(name, std::span<real>(array), held.begin, held.all);
         Checkpoint::require_finite(name, array);
@@ -133,7 +133,7 @@ void Water<D>::restore(const Checkpoint& from) {
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
-    steps_ = counts[0], escaped_ = slabs().rank() == 0 ? counts[1] : 0, reseeded_ = slabs().rank() == 0 ? counts[2] : 0;
+    steps_ = counts[0], escaped_ = communicator().rank() == 0 ? counts[1] : 0, reseeded_ = communicator().rank() == 0 ? counts[2] : 0;
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !held_.distributed(), markers_whole_ = false;
     gather_whole();

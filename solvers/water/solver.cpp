@@ -1,8 +1,8 @@
 #include "water/solver.hpp"
 
 #include "core/parallel.hpp"
-#include "staggered/closed_volume.hpp"
-#include "staggered/inflow.hpp"
+#include "mac/grid/closed_volume.hpp"
+#include "mac/grid/inflow.hpp"
 #include "water/curvature.hpp"
 
 namespace weir::water {
@@ -25,7 +25,7 @@ StepReport Water<D>::step(real dt) {
     forces(kick);                                       // u* += dt f, (I − dt ν∇²) u* = ...
     const poisson::Report poisson = project(dt, kick);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     const real divergence = pressure_.max_divergence(state_);
-    staggered::require_room(state_, solids_, divergence);
+    mac::require_room(state_, solids_, divergence);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
     leapfrog_.finish(state_.u, kick);
@@ -218,7 +218,7 @@ poisson::Report Water<D>::project_once(real dt, real kick, bool again) {
 template <int D>
 poisson::Report Water<D>::project(real dt, real kick) {
     apply_ice_drag(kick);
-    poisson::Report report = staggered::explained_by_room(state_, solids_, [&] { return project_once(dt, kick, false); });
+    poisson::Report report = mac::explained_by_room(state_, solids_, [&] { return project_once(dt, kick, false); });
     if (viscosity_ && !bodies_) report = balance_friction(dt, kick, report);
     if (bodies_) in_solids_.see_velocities(solids_.solids(), state_);
     refresh(state_.u[D - 1], frame_.periodic(D - 1));

@@ -3,21 +3,21 @@
 // 2005; Batty et al. 2007; Bridson 2015.
 #pragma once
 #include "core/effects.hpp"
-#include "core/held_planes.hpp"
 #include "core/solver.hpp"
+#include "free_surface/extrapolate.hpp"
+#include "free_surface/leapfrog.hpp"
+#include "free_surface/level_set.hpp"
+#include "free_surface/marker_motion.hpp"
+#include "free_surface/markers.hpp"
+#include "free_surface/solid_faces.hpp"
+#include "free_surface/start.hpp"
+#include "free_surface/volume_fraction.hpp"
 #include "geometry/solids.hpp"
+#include "mac/bodies/solid_faces.hpp"
+#include "mac/grid/projection.hpp"
+#include "mac/grid/state.hpp"
+#include "parallel/held_planes.hpp"
 #include "scene/solver_kind.hpp"
-#include "staggered/projection.hpp"
-#include "staggered/solid_faces.hpp"
-#include "staggered/state.hpp"
-#include "surface/extrapolate.hpp"
-#include "surface/leapfrog.hpp"
-#include "surface/level_set.hpp"
-#include "surface/marker_motion.hpp"
-#include "surface/markers.hpp"
-#include "surface/solid_faces.hpp"
-#include "surface/start.hpp"
-#include "surface/volume_fraction.hpp"
 #include "water/emitters.hpp"
 #include "water/heat.hpp"
 #include "water/mixing.hpp"
@@ -32,7 +32,7 @@
 
 namespace weir::water {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Estimated time of a step per plane of cells [ns], for the start of a scene or for a state. Collective for a state in distributed
 /// storage.

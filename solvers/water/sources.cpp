@@ -81,7 +81,7 @@ std::int64_t Water<D>::emit(const Emitter<D>& emitter, real dt) {
                 x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
                        emitter.velocity[d] * running;
             }
-            if (is_distributed() && !markers_.holds(frame_, held_.cut(), slabs().rank(), frame_.cell_of(x)[D - 1])) continue;
+            if (is_distributed() && !markers_.holds(frame_, held_.cut(), communicator().rank(), frame_.cell_of(x)[D - 1])) continue;
             const Vec<D> earlier = x - (to - from) * emitter.velocity;
             const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
             const bool enters = now && !before, fills = starts && before && !(surface_.phi(frame_.cell_of(earlier)) < 0);
@@ -222,7 +222,8 @@ void Water<D>::redistribute_markers() {
     const auto row = static_cast<std::size_t>(frame_.cells[0]);
     const std::size_t cells = product(frame_.cells);
     for (std::size_t cell = 0; cell < cells; ++cell) {
-        if (is_distributed() && cell % row == 0 && !markers_.holds(frame_, held_.cut(), slabs().rank(), frame_.index_of(cell)[D - 1])) {
+        if (is_distributed() && cell % row == 0 &&
+            !markers_.holds(frame_, held_.cut(), communicator().rank(), frame_.index_of(cell)[D - 1])) {
             cell += row - 1;
             continue;
         }

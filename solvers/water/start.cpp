@@ -1,9 +1,9 @@
 // Initial state of a scene with liquid: the level set of its shapes, its markers, its velocity.
-#include "core/load_balance.hpp"
 #include "geometry/brush.hpp"
+#include "mac/grid/initial.hpp"
+#include "mac/grid/own_planes.hpp"
+#include "parallel/load_balance.hpp"
 #include "scene/names.hpp"
-#include "staggered/initial.hpp"
-#include "staggered/own_planes.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
 
@@ -23,7 +23,7 @@ bool all_stick(const geometry::Solids<D>& solids) {
 template <int D>
 Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
-      held_(staggered::held_planes<D>(scene, static_cast<int>(std::ceil(options_.cfl)) + 3)),
+      held_(mac::held_planes<D>(scene, static_cast<int>(std::ceil(options_.cfl)) + 3)),
       state_(scene, FieldPlan{}),
       frame_(state_.u, state_.sides),
       bodies_(BodiesInFlow<D>::make(scene)),
@@ -163,7 +163,7 @@ void Water<D>::seed_markers() {
         markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);
-        if (is_distributed() && !markers_.holds(frame_, held_.cut(), slabs().rank(), I[D - 1])) continue;
+        if (is_distributed() && !markers_.holds(frame_, held_.cut(), communicator().rank(), I[D - 1])) continue;
         if (surface_.phi(I) > norm(frame_.h)) continue;
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);

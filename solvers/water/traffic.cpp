@@ -1,8 +1,8 @@
 // Estimate of what a rank sends in a step of the solver "mac_water": the exchanges of solver.cpp and of surface/, pass by pass.
 #include "poisson/traffic.hpp"
+#include "free_surface/traffic.hpp"
 #include "geometry/liquid_fraction.hpp"
-#include "staggered/own_planes.hpp"
-#include "surface/traffic.hpp"
+#include "mac/grid/own_planes.hpp"
 #include "water/solver.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ public:
           n_(lattice_.cells),
           transfer_(scene.text("scheme.transfer")),
           ring_(sides_.periodic(D - 1)),
-          windowed_(staggered::could_hold_own_planes(scene, of.cut)),
+          windowed_(mac::could_hold_own_planes(scene, of.cut)),
           shape_(shape),
           reach_(std::min(n_[D - 1], shape.cells_crossed + 3)),
           surface_(n_, lattice_.h, scene.number("time.cfl"), ring_),
@@ -159,7 +159,7 @@ private:
 
     const scene::Scene& scene_;
     geometry::Sides<D> sides_;
-    staggered::Lattice<D> lattice_;
+    mac::Lattice<D> lattice_;
     Index<D> n_;
     std::string transfer_;
     bool ring_, windowed_;

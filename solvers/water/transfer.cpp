@@ -1,7 +1,7 @@
 #include "water/transfer.hpp"
 
 #include "core/parallel.hpp"
-#include "surface/marker_lanes.hpp"
+#include "free_surface/marker_lanes.hpp"
 
 namespace weir::water {
 

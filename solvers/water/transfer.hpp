@@ -8,7 +8,7 @@
 // Scattering runs over slabs of planes, even slabs first, then odd ones: no two concurrent slabs share a face. Every sum is in the order of
 // the sorted markers, for any number of threads.
 #pragma once
-#include "surface/markers.hpp"
+#include "free_surface/markers.hpp"
 
 #include <array>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace weir::water {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 /// Momentum and weight scattered to one face, stored together because both are updated together.
 struct FaceSum {

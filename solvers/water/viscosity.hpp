@@ -10,8 +10,8 @@
 // In parallel each rank solves for the faces of its own planes and reads one ghost plane on each side.
 #pragma once
 #include "core/parallel.hpp"
-#include "staggered/state.hpp"
-#include "surface/level_set.hpp"
+#include "free_surface/level_set.hpp"
+#include "mac/grid/state.hpp"
 #include "water/body_rows.hpp"
 
 #include <array>
@@ -20,7 +20,7 @@
 
 namespace weir::water {
 
-using namespace surface;  // the words of the grid and of its free surface are the solver's own
+using namespace free_surface;  // the words of the grid and of its free surface are the solver's own
 
 template <int D>
 class SurfaceViscosity {

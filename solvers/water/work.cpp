@@ -1,6 +1,6 @@
 // Estimated work of a step per plane of cells, for load balancing.
-#include "core/load_balance.hpp"
 #include "geometry/liquid_fraction.hpp"
+#include "parallel/load_balance.hpp"
 #include "water/solver.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ std::int64_t work(real cells, const geometry::PlaneOfLiquid& plane) {
 std::vector<geometry::PlaneOfLiquid> planes_of(const Checkpoint& state, std::size_t planes, std::size_t cells_of_plane, real near) {
     const auto held = state.held<real>("surface.phi");
     if (held.all != planes * cells_of_plane) return {};
-    const auto here = held.part ? held : held.share(slabs().rank(), slabs().ranks());
+    const auto here = held.part ? held : held.share(communicator().rank(), communicator().ranks());
     std::vector<real> phi(here.end - here.begin);
     state.get_part("surface.phi", std::span(phi), here.begin, here.all);
     std::vector<std::int64_t> counts(2 * planes, 0);  // wet, near

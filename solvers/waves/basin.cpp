@@ -1,6 +1,6 @@
 #include "waves/basin.hpp"
 
-#include "core/rank_ordered.hpp"
+#include "parallel/rank_ordered.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // The schema of the solver "waves".
-#include "core/traffic.hpp"
+#include "parallel/traffic.hpp"
 #include "scene/gravity.hpp"
 #include "waves/fourier.hpp"
 #include "waves/solver.hpp"
@@ -228,12 +228,12 @@ scene::SolverKind kind() {
             {{"level_set", "velocity", "position", "jacobian"},
              {"surface", "water"},
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
-            check_parallel,
-            scene::Shared::by_planes,
-            [](const scene::Scene& scene, const Cut&) { return std::string(scene.dim() == 2 ? "the surface's one row" : ""); },
-            holds_own_planes,
-            traffic_of_step,
-            [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }};
+            {.check = check_parallel,
+             .replicated_work = [](const scene::Scene& scene,
+                                   const Cut&) { return std::string(scene.dim() == 2 ? "the surface's one row" : ""); },
+             .distributed_storage = holds_own_planes,
+             .traffic = traffic_of_step,
+             .partition = [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }}};
 }
 
 }  // namespace weir::waves

@@ -1,8 +1,8 @@
 // The surface as a sheet of points over the cells of the horizontal axes, x fastest, and a model's result for one point. In 2D there is one
 // row of points.
 #pragma once
-#include "core/held_planes.hpp"
 #include "core/types.hpp"
+#include "parallel/held_planes.hpp"
 #include "scene/scene.hpp"
 
 #include <array>
@@ -63,7 +63,7 @@ real most_of_rows(const Box& box, F&& f) {
     return box.dim == 2 ? ordered_max(1, f) : plane_max(box.nz(), f);
 }
 
-/// Distributed storage in parallel (core/plane_store.hpp): rows of the sheet in 3D, layers of cells in 2D.
+/// Distributed storage in parallel (parallel/plane_store.hpp): rows of the sheet in 3D, layers of cells in 2D.
 using Values = Grid<real, 2>;
 
 /// The requested fields; others are empty.

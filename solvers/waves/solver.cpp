@@ -9,12 +9,12 @@
 
 namespace weir::waves {
 
-bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !slabs().holds_whole(); }
+bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
 namespace {
 
 HeldPlanes held_planes(const scene::Scene& scene, const Box& box) {
-    const Cut cut = cut_of_box(box, slabs().ranks());
+    const Cut cut = cut_of_box(box, communicator().ranks());
     return HeldPlanes(cut, holds_own_planes(scene, cut), 1, false);
 }
 
@@ -98,7 +98,7 @@ void Waves::fill_ghosts() const {
     if (held_.distributed()) {
         std::vector<Planes> all;
         for (Values* values : own.shared()) all.push_back(planes_of(*values));
-        slabs().refresh(held_.cut(), all, 1, false);
+        communicator().refresh(held_.cut(), all, 1, false);
     } else {
         for (Values* values : own.shared()) gather(*values);
     }

@@ -26,8 +26,8 @@ Aligned<T> aligned(std::size_t count) {
 
 PlaneRange held_columns(int columns, int rows) {
     if (!parts_columns(rows)) return {0, columns};
-    const Cut cut = cut_of_columns(columns, slabs().ranks());
-    return {cut.begin(slabs().rank()), cut.end(slabs().rank(), columns)};
+    const Cut cut = cut_of_columns(columns, communicator().ranks());
+    return {cut.begin(communicator().rank()), cut.end(communicator().rank(), columns)};
 }
 
 template <class T>
@@ -36,7 +36,7 @@ Transposition<T>::Transposition(int columns, int rows, const PlaneRange& held)
       row_count_(rows),
       held_(held),
       length_(padded(rows)),
-      by_column_(cut_of_columns(columns, slabs().ranks())),
+      by_column_(cut_of_columns(columns, communicator().ranks())),
       columns_(aligned<T>(length_ * static_cast<std::size_t>(std::max(1, count(held))))) {}
 
 template <class T>
@@ -51,8 +51,8 @@ std::vector<typename Transposition<T>::Block> Transposition<T>::blocks() {
     const PlaneRange columns = own_columns(), rows = own_rows();
     std::vector<Block> list;
     std::size_t turned = 0, others = 0;
-    for (int peer = 0; peer < slabs().ranks(); ++peer) {
-        if (peer == slabs().rank()) continue;
+    for (int peer = 0; peer < communicator().ranks(); ++peer) {
+        if (peer == communicator().rank()) continue;
         const std::size_t of_columns = area(columns, rows_of(peer)), of_rows = area(columns_of(peer), rows);
         list.push_back(
             {peer, rows_of(peer), turned_.data() + turned, others_.data() + others, of_columns * sizeof(T), of_rows * sizeof(T)});
@@ -81,7 +81,7 @@ void Transposition<T>::transpose() {
         each_part(block, [](const T* part, T* place, std::size_t length) { std::copy_n(part, length, place); });
         messages.push_back({block.peer, block.of_columns, block.columns_bytes, block.of_rows, block.rows_bytes});
     }
-    slabs().exchange(messages);
+    communicator().exchange(messages);
 }
 
 template <class T>
@@ -90,7 +90,7 @@ void Transposition<T>::transpose_back() {
     std::vector<Message> messages;
     for (const Block& block : list)
         messages.push_back({block.peer, block.of_rows, block.rows_bytes, block.of_columns, block.columns_bytes});
-    slabs().exchange(messages);
+    communicator().exchange(messages);
     for (const Block& block : list) each_part(block, [](T* part, const T* place, std::size_t length) { std::copy_n(place, length, part); });
 }
 

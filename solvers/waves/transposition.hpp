@@ -3,8 +3,8 @@
 // transforms. A field of one row is replicated.
 #pragma once
 #include "core/parallel.hpp"
-#include "core/slabs.hpp"
 #include "core/types.hpp"
+#include "parallel/communicator.hpp"
 
 #include <algorithm>
 #include <complex>
@@ -42,8 +42,8 @@ public:
     /// The entries of a stored column.
     T* column(int m) const { return columns_.get() + static_cast<std::size_t>(m - held_.begin) * length_; }
     /// The columns that this rank transforms.
-    PlaneRange own_columns() const { return transposes() ? columns_of(slabs().rank()) : PlaneRange{0, column_count_}; }
-    PlaneRange own_rows() const { return transposes() ? rows_of(slabs().rank()) : PlaneRange{0, row_count_}; }
+    PlaneRange own_columns() const { return transposes() ? columns_of(communicator().rank()) : PlaneRange{0, column_count_}; }
+    PlaneRange own_rows() const { return transposes() ? rows_of(communicator().rank()) : PlaneRange{0, row_count_}; }
 
     /// Backward: own rows of all columns, from own columns of all rows. row_at(n) receives the entries of row n; then transform(n) is
     /// called.

@@ -1,8 +1,8 @@
-// What ranks send, told before a run by the formulas of the solvers (SolverKind::sends), against what parallel runs have counted: in the
+// What ranks send, told before a run by the formulas of the solvers (ParallelSupport::traffic), against what parallel runs have counted: in the
 // steps by which one run is longer than another, so that neither beginning nor end counts. (Frames are not compressed: as many bytes at any
 // time.)
 #include "app/process.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
 #include "sim/shares.hpp"
 #include "support/temporary_folder.hpp"
@@ -65,13 +65,13 @@ Traffic told(const scene::Scene& scene, int ranks, int rank, const Run& run, std
     Traffic sum;
     for (std::size_t step = first; step < run.steps(); ++step) {
         const double cfl = run.value(step, "cfl");
-        const StepTraffic sent = kind.sends(scene, of,
-                                            {.iterations = run.iterations(step),
-                                             .cells_crossed = cfl > 0 ? 1 : 0,
-                                             .step = static_cast<std::int64_t>(step) + 1,
-                                             .beside = beside,
-                                             .viscous_iterations = run.iterations(step, "viscous_iterations"),
-                                             .viscous_coupling_iterations = run.iterations(step, "viscous_turns")});
+        const StepTraffic sent = kind.parallel.traffic(scene, of,
+                                                       {.iterations = run.iterations(step),
+                                                        .cells_crossed = cfl > 0 ? 1 : 0,
+                                                        .step = static_cast<std::int64_t>(step) + 1,
+                                                        .beside = beside,
+                                                        .viscous_iterations = run.iterations(step, "viscous_iterations"),
+                                                        .viscous_coupling_iterations = run.iterations(step, "viscous_turns")});
         EXPECT_TRUE(sent.besides.empty()) << sent.besides[0];
         sum.messages += sent.all().messages, sum.bytes += sent.all().bytes;
     }
@@ -343,7 +343,7 @@ TEST("cost --plan --ranks prints the formula's numbers, the constants with their
     EXPECT_EQ(code, 0) << text;
     const auto scene = scene::read(folder.path() / "pool.toml", sim::schemas());
     for (int rank = 0; rank < 2; ++rank) {
-        const Traffic sent = sim::kind_named("mac_water").sends(scene, {sim::shares_of(scene, 2).cut, rank, 2}, {}).all();
+        const Traffic sent = sim::kind_named("mac_water").parallel.traffic(scene, {sim::shares_of(scene, 2).cut, rank, 2}, {}).all();
         EXPECT_NE(text.find(fmt::format("{:6} messages {:>12} bytes per step", sent.messages, sent.bytes)), std::string::npos) << text;
     }
     for (const char* part :

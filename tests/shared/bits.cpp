@@ -1,6 +1,6 @@
 // Lanes of every width that have a fused product and sum, and devices that have it, compute the same bits: one text, one order of
 // neighbours, no rounding that a compiler or a processor may choose.
-#include "particles/isa.hpp"
+#include "particles/threads/isa.hpp"
 #include "pbf/device_solver.hpp"
 #include "pbf/solver.hpp"
 #include "shared/device.hpp"

@@ -2,7 +2,7 @@
 #include "shared/device.hpp"
 
 #include "core/error.hpp"
-#include "particles/device_memory.hpp"
+#include "particles/opencl/device_memory.hpp"
 
 #include "support/test.hpp"
 

@@ -1,7 +1,7 @@
 // What can stand around a liquid, as lines of a scene (a box of 1 x 1.5 [x 1] m).
 #pragma once
 #include "core/solver.hpp"
-#include "particles/domain.hpp"
+#include "particles/state/domain.hpp"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
-// Ranks for a unit test without MPI: the test forks a process for each, which exchange through sockets between each two. Of Slabs they have
-// all but the gathering of planes.
+// Ranks for a unit test without MPI: the test forks a process for each, which exchange through sockets between each two. Of Communicator
+// they have all but the gathering of planes.
 #pragma once
 #include "core/parallel.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 #include "support/test.hpp"
 
 #include <array>
@@ -22,11 +22,11 @@
 
 namespace weir::test {
 
-class ForkedSlabs final : public Slabs {
+class ForkedSlabs final : public Communicator {
 public:
     /// peers: a socket to each rank.
     ForkedSlabs(int rank, std::vector<int> peers, bool poisons)
-        : Slabs(rank, static_cast<int>(peers.size())), peers_(std::move(peers)), poisons_(poisons) {
+        : Communicator(rank, static_cast<int>(peers.size())), peers_(std::move(peers)), poisons_(poisons) {
         for (const int socket : peers_)
             if (socket >= 0) fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) | O_NONBLOCK);
     }
@@ -149,7 +149,7 @@ inline void on_ranks(int count, const std::function<void()>& body, bool poisons 
         alarm(120);  // ends a rank that waits for one that has ended
         close_all_but(r);
         set_threads(1);
-        set_slabs(std::make_unique<ForkedSlabs>(static_cast<int>(r), sockets[r], poisons));
+        set_communicator(std::make_unique<ForkedSlabs>(static_cast<int>(r), sockets[r], poisons));
         try {
             body();
         } catch (const std::exception& failure) {

@@ -1,6 +1,6 @@
 // Small MAC simulations for tests: a scene as text, its solver by type.
 #pragma once
-#include "flow/solver.hpp"
+#include "smoke/solver.hpp"
 #include "studies/kinds.hpp"
 #include "studies/transport.hpp"
 
@@ -11,7 +11,7 @@
 namespace weir::test {
 
 inline scene::Scene mac_scene(const std::string& text, const std::vector<scene::Override>& overrides = {}) {
-    return scene::parse(text, "test.toml", {flow::kind().schema, studies::transport_kind().schema, studies::poisson_kind().schema},
+    return scene::parse(text, "test.toml", {smoke::kind().schema, studies::transport_kind().schema, studies::poisson_kind().schema},
                         overrides);
 }
 

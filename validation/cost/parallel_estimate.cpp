@@ -1,7 +1,7 @@
 #include "validation/cost/parallel_estimate.hpp"
 
 #include "core/error.hpp"
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 #include "sim/shares.hpp"
 
 #include <fmt/format.h>
@@ -52,11 +52,11 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
     _exit(0);
 }
 
-/// Scope in which slabs() are those of a rank that exchanges nothing: for code that reads the number of ranks.
+/// Scope in which communicator() are those of a rank that exchanges nothing: for code that reads the number of ranks.
 class DryRun {
 public:
-    DryRun(int rank, int ranks) { set_slabs(std::make_unique<Slabs>(rank, ranks)); }
-    ~DryRun() { set_slabs(nullptr); }
+    DryRun(int rank, int ranks) { set_communicator(std::make_unique<Communicator>(rank, ranks)); }
+    ~DryRun() { set_communicator(nullptr); }
     DryRun(const DryRun&) = delete;
     DryRun& operator=(const DryRun&) = delete;
 };
@@ -66,7 +66,8 @@ int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.r
 /// One that has two neighbours and as many planes as any other: of a model in which all have as much to do.
 RankOf one_between(const scene::Scene& scene, const scene::SolverKind& kind, int ranks) {
     RankOf of{.rank = ranks / 2, .ranks = ranks};
-    if (kind.shared == scene::Shared::by_planes) of.cut = kind.cut ? kind.cut(scene, ranks) : cut_of(planes_of_scene(scene), ranks);
+    if (kind.parallel.shared == scene::Shared::by_planes)
+        of.cut = kind.parallel.partition ? kind.parallel.partition(scene, ranks) : cut_of(planes_of_scene(scene), ranks);
     return of;
 }
 
@@ -100,7 +101,7 @@ std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector
             const scene::Scene other = particles > 0 ? scene : with_planes(scene, static_cast<int>(std::lround(each * ranks)), schemas);
             StepShape shape = o.shape;
             shape.particles = each * ranks;
-            const StepTraffic sent = kind.sends(other, one_between(other, kind, ranks), shape);
+            const StepTraffic sent = kind.parallel.traffic(other, one_between(other, kind, ranks), shape);
             list.push_back(model_step(units * o.seconds_each, sent, ranks, o.link));
         } catch (const BadInput&) {  // in a shorter domain there may be no place for an emitter
         }
@@ -157,8 +158,8 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
     o.cut = shares.cut;
     {
         const DryRun several(0, ranks);
-        o.own_part =
-            ranks > 1 && (kind.shared == scene::Shared::by_particles || (kind.holds_own_part && kind.holds_own_part(scene, o.cut)));
+        o.own_part = ranks > 1 && (kind.parallel.shared == scene::Shared::by_particles ||
+                                   (kind.parallel.distributed_storage && kind.parallel.distributed_storage(scene, o.cut)));
     }
     const std::vector<double> parts = o.own_part && !o.cut.empty() ? sim::parts_of_planes(scene, kinds) : std::vector<double>{};
     for (int rank = 0; rank < ranks; ++rank) {
@@ -167,7 +168,7 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
                           : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank, parts)
                                             : f.held.bytes * part_of_particles(scene, rank, ranks));
         o.surface_bytes.push_back(sim::surface_bytes_of_rank(scene, f.held, rank, ranks));
-        if (ranks > 1 && kind.sends) o.sent.push_back(kind.sends(scene, of, o.shape));
+        if (ranks > 1 && kind.parallel.traffic) o.sent.push_back(kind.parallel.traffic(scene, of, o.shape));
     }
     if (!o.sent.empty() && !o.nothing_shared) o.weak = weak_scaling(scene, kinds, o, o.shape.particles);
     return o;

@@ -1,8 +1,8 @@
 // What a scene takes over several ranks, before it runs: planes, memory and messages of each, by the formulas of its solver
-// (SolverKind::sends), and how its steps would get on where grid and ranks grow together (weak scaling), by a model of three constants:
+// (ParallelSupport::traffic), and how its steps would get on where grid and ranks grow together (weak scaling), by a model of three constants:
 // seconds a cell or particle, a message's latency, bytes a second.
 #pragma once
-#include "core/traffic.hpp"
+#include "parallel/traffic.hpp"
 #include "validation/cost/cost_estimate.hpp"
 
 #include <optional>

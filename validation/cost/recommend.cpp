@@ -2,7 +2,7 @@
 
 #include "backend/device.hpp"
 #include "core/error.hpp"
-#include "particles/isa.hpp"
+#include "particles/threads/isa.hpp"
 #include "sim/registry.hpp"
 
 #include <fmt/format.h>

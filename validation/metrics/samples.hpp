@@ -1,8 +1,8 @@
 // Loops over the samples of a field on the grid, and its values on lines: what metrics need of a finished run.
 #pragma once
-#include "core/halo.hpp"
 #include "core/solver.hpp"
 #include "core/types.hpp"
+#include "parallel/partition.hpp"
 #include "validation/harness/curve.hpp"
 
 #include <algorithm>

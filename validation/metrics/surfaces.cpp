@@ -1,7 +1,7 @@
 // The surface that a scene names for its frames, made once more of the last fields: volume, distance, shape, and whether it is closed.
-#include "reconstruction/measure.hpp"
-#include "reconstruction/reconstruction.hpp"
-#include "reconstruction/triangle.hpp"
+#include "surfaces/measure.hpp"
+#include "surfaces/reconstruction.hpp"
+#include "surfaces/triangle.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/needed_field.hpp"
 
@@ -12,7 +12,7 @@ namespace weir::validation {
 
 namespace {
 
-using namespace reconstruction;
+using namespace surfaces;
 
 /// Nearer to an edge or a corner of the liquid than this, in spacings, nothing is claimed of distances: a kernel has a radius of two.
 constexpr real away_from_edges = 2;

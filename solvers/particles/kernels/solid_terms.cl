@@ -1,4 +1,4 @@
-/* Terms of solids at nearby particles (density maps, Koschier & Bender 2017; particles/solid_terms.cpp): for each sorted particle the
+/* Terms of solids at nearby particles (density maps, Koschier & Bender 2017; particles/boundaries/solid_terms.cpp): for each sorted particle the
    gradient and the part of the kernel inside them. Only particles that start the step near a solid are processed again. */
 WEIR_FN double4 world_of(float4 at, __constant StateParams* s) {
     return (double4)(at.x + s->centre[0], at.y + s->centre[1], WEIR_DIM == 3 ? at.z + s->centre[2] : 0, 0);

@@ -1,9 +1,9 @@
 // Observed orders against exact solutions of the Navier-Stokes equations.
-#include "staggered/diagnostics.hpp"
+#include "mac/grid/diagnostics.hpp"
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
-namespace weir::flow {
+namespace weir::smoke {
 
 namespace {
 
@@ -102,4 +102,4 @@ TEST("Couette's start-up is met to 1e-3 at 32 cells and at order 2") {
     EXPECT_GE(std::log2(coarse / fine), 1.8);
 }
 
-}  // namespace weir::flow
+}  // namespace weir::smoke

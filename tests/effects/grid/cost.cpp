@@ -27,7 +27,7 @@ Names pass_names(const Solver& solver) {
 const char* const stirred = "initial.velocity = { name = \"random\" }\n";
 
 std::unique_ptr<Solver> make(int dim, const std::string& rest) {
-    return flow::kind().make(test::mac_scene(test::unit_box(dim, 16, stirred + rest)));
+    return smoke::kind().make(test::mac_scene(test::unit_box(dim, 16, stirred + rest)));
 }
 
 /// A tank of 1.5 m by 1 m (by 0.75 m) with a block of water in its lower left corner.

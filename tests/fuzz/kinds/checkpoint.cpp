@@ -9,7 +9,7 @@
 
 namespace {
 
-/// FNV-1a, as core/checkpoint.cpp has it: a fuzzer would never find it.
+/// FNV-1a, as parallel/checkpoint_file.cpp has it: a fuzzer would never find it.
 std::string with_checksum(std::string_view bytes) {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;

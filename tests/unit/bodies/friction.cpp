@@ -1,5 +1,5 @@
 // Bodies with no slip in a viscous fluid: torque between cylinders, what the fluid loses and the body gets, bodies without mass, restart.
-#include "flow/body_friction.hpp"
+#include "smoke/body_friction.hpp"
 #include "support.hpp"
 
 using namespace weir;
@@ -50,7 +50,7 @@ TEST("what friction takes from the fluid the body gets, but for what the sides t
     const OneThread alone;
     const auto scene = scene_of(
         sticky("{ shape = \"sphere\", centre = [0.6, 0.7], radius = 0.2, density = 2000.0, slip = \"no\" }", 32, 1e-2, "[0.0, -9.81]"));
-    flow::FlowSolver<2> solver(scene);
+    smoke::FlowSolver<2> solver(scene);
     for (int i = 0; i < 5; ++i) solver.step(0.01);
     auto& s = solver.state();
     const auto momentum = [&] {
@@ -60,7 +60,7 @@ TEST("what friction takes from the fluid the body gets, but for what the sides t
         });
         return sum;
     };
-    flow::BodyFriction<2> friction(s);
+    smoke::BodyFriction<2> friction(s);
     const real dt = 0.01, before = momentum();
     friction.solve(s, dt);
     real sides = 0;  // the ends of the box hold the fluid that runs at them
@@ -92,7 +92,7 @@ TEST("a body with friction goes on after a restart as if nothing had been") {
     const auto scene =
         scene_of(sticky("{ shape = \"box\", min = [0.4, 0.6], max = [0.7, 0.8], density = 1500.0, spin = [2.0], slip = \"no\" }", 32, 1e-3,
                         "[0.0, -9.81]"));
-    const auto solver = flow::kind().make(scene), again = flow::kind().make(scene);
+    const auto solver = smoke::kind().make(scene), again = smoke::kind().make(scene);
     for (int i = 0; i < 5; ++i) solver->step(0.005);
     Checkpoint kept;
     solver->save(kept);

@@ -1,10 +1,10 @@
 // Bodies with no slip in a liquid with a free surface: torque between cylinders, what the one loses and the other gets, restart, threads.
-#include "staggered/bodies_in_flow.hpp"
+#include "mac/bodies/bodies_in_flow.hpp"
 #include "support.hpp"
 
 using namespace weir;
 using namespace weir::test;
-using namespace weir::surface;
+using namespace weir::free_surface;
 
 namespace {
 
@@ -77,10 +77,10 @@ effects = { viscosity = { scheme = "implicit" } }
 bodies = [ { shape = "sphere", centre = [0.36, 0.34, 0.35], radius = 0.07, density = 2e3, velocity = [1, 0.5, 0.2], spin = [9, 5, 2], slip = "no" } ]
 )");
     MacState<D> s{scene, FieldPlan{}};
-    staggered::BodiesInFlow<D> bodies{scene};
-    staggered::SolidPlacement<D> solids{staggered::BodiesInFlow<D>::solids(scene, &bodies), s};
-    surface::Frame<D> frame{s.u, s.sides};
-    surface::LevelSet<D> all_liquid{frame, 1};
+    mac::BodiesInFlow<D> bodies{scene};
+    mac::SolidPlacement<D> solids{mac::BodiesInFlow<D>::solids(scene, &bodies), s};
+    free_surface::Frame<D> frame{s.u, s.sides};
+    free_surface::LevelSet<D> all_liquid{frame, 1};
     Grid<std::uint8_t, D> closed{s.extent()};
     MacVelocity<D> before;
     const rigid::Body<D>& body() const { return bodies.bodies()[0]; }
@@ -91,7 +91,7 @@ bodies = [ { shape = "sphere", centre = [0.36, 0.34, 0.35], radius = 0.07, densi
         std::uint64_t key = 0;
         for (int a = 0; a < D; ++a)
             for (std::size_t i = 0; i < s.u[a].size(); ++i) {
-                const Index<D> I = staggered::index_of<D>(s.u[a].extent(), i);
+                const Index<D> I = mac::index_of<D>(s.u[a].extent(), i);
                 const bool near = norm(s.u.face_centre(a, I) - body().at) < body().radius + 2 * s.u.h[0];
                 s.u[a][i] = near ? hashed_random(7, ++key, 0) - 0.5 : 0;
             }
@@ -111,8 +111,8 @@ bodies = [ { shape = "sphere", centre = [0.36, 0.34, 0.35], radius = 0.07, densi
         rigid::Twist<D> sum{};
         for (int a = 0; a < D; ++a)
             for (std::size_t i = 0; i < s.u[a].size(); ++i) {
-                const Vec<D> r = s.u.face_centre(a, staggered::index_of<D>(s.u[a].extent(), i)) - body().at;
-                const auto moves = staggered::moves_at<D>(a, r);
+                const Vec<D> r = s.u.face_centre(a, mac::index_of<D>(s.u[a].extent(), i)) - body().at;
+                const auto moves = mac::moves_at<D>(a, r);
                 for (std::size_t k = 0; k < moves.size(); ++k) sum[k] += s.rho * s.u.cell_volume() * moves[k] * (s.u[a][i] - before[a][i]);
             }
         return sum;
@@ -160,8 +160,8 @@ TEST("liquid that turns with a body as one does not rub it") {
     const auto& body = r.body();
     for (int a = 0; a < 2; ++a)
         for (std::size_t i = 0; i < r.s.u[a].size(); ++i) {
-            const Vec<2> at = r.s.u.face_centre(a, staggered::index_of<2>(r.s.u[a].extent(), i));
-            r.s.u[a][i] = staggered::NoSlipWalls<2>::along(staggered::moves_at<2>(a, at - body.at), body.velocity);
+            const Vec<2> at = r.s.u.face_centre(a, mac::index_of<2>(r.s.u[a].extent(), i));
+            r.s.u[a][i] = mac::NoSlipWalls<2>::along(mac::moves_at<2>(a, at - body.at), body.velocity);
         }
     water::SurfaceViscosity<2> viscosity(r.frame, r.s, 1, true);
     viscosity.enforce_bodies(r.s);

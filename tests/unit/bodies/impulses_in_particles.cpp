@@ -1,5 +1,5 @@
 // The impulses between one particle and one body: the added mass along and across the normal, in closed form.
-#include "particles/bodies_in_liquid.hpp"
+#include "particles/boundaries/bodies_in_liquid.hpp"
 #include "pbf/solver.hpp"
 #include "support.hpp"
 

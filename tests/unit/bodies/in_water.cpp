@@ -205,10 +205,9 @@ namespace {
 
 /// What solids close of the grid as they stand, found in one sweep of all cells.
 template <int D>
-void expect_placed_as_a_whole(const staggered::MacState<D>& s, const geometry::Solids<D>& solids, const scene::Scene& scene,
-                              bool with_velocity) {
-    staggered::MacState<D> whole(scene, {});
-    staggered::SolidPlacement<D> placement(solids, whole);
+void expect_placed_as_a_whole(const mac::MacState<D>& s, const geometry::Solids<D>& solids, const scene::Scene& scene, bool with_velocity) {
+    mac::MacState<D> whole(scene, {});
+    mac::SolidPlacement<D> placement(solids, whole);
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         for (std::size_t f = 0; f < whole.solid.open[at].size(); ++f) {
@@ -270,9 +269,9 @@ bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], densi
            { shape = "sphere", centre = [0.75, 0.5, 0.3], radius = 0.1, density = 500.0 },
            { shape = "box", min = [0.5, 0.11, 0.3], max = [0.6, 0.2, 0.4], density = 500.0 } ]
 )");
-    auto bodies = staggered::BodiesInFlow<3>::make(scene);
-    staggered::MacState<3> state(scene, {});
-    staggered::SolidPlacement<3> placement(staggered::BodiesInFlow<3>::solids(scene, bodies.get()), state);
+    auto bodies = mac::BodiesInFlow<3>::make(scene);
+    mac::MacState<3> state(scene, {});
+    mac::SolidPlacement<3> placement(mac::BodiesInFlow<3>::solids(scene, bodies.get()), state);
     bodies->start(state, placement);
     for (int step = 0; step < 60; ++step) {
         bodies->advance_free(placement, 0.01);

@@ -1,7 +1,7 @@
 // Scenes of bodies in fluid for the tests.
 #pragma once
 #include "core/parallel.hpp"
-#include "flow/solver.hpp"
+#include "smoke/solver.hpp"
 #include "support/test.hpp"
 #include "water/solver.hpp"
 
@@ -12,13 +12,13 @@
 namespace weir::test {
 
 inline scene::Scene scene_of(const std::string& text) {
-    static const std::vector<scene::SolverSchema> schemas{water::kind().schema, flow::kind().schema};
+    static const std::vector<scene::SolverSchema> schemas{water::kind().schema, smoke::kind().schema};
     return scene::parse(text, "bodies.toml", schemas);
 }
 
 inline std::unique_ptr<Solver> solver_of(const std::string& text) {
     const scene::Scene scene = scene_of(text);
-    return scene.solver() == "mac" ? flow::kind().make(scene) : water::kind().make(scene);
+    return scene.solver() == "mac" ? smoke::kind().make(scene) : water::kind().make(scene);
 }
 
 /// Loops of problems too small to share are not shared while it lives, as a Simulation sees to.

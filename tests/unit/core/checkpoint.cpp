@@ -54,7 +54,7 @@ namespace {
 
 /// A block of numbers that ranks share, and one that all have.
 void write_in_parallel(const std::filesystem::path& path, std::size_t count) {
-    const Checkpoint::Held share = Checkpoint::Held{0, count, count, false}.share(slabs().rank(), slabs().ranks());
+    const Checkpoint::Held share = Checkpoint::Held{0, count, count, false}.share(communicator().rank(), communicator().ranks());
     std::vector<double> own;
     for (std::size_t i = share.begin; i < share.end; ++i) own.push_back(0.5 * static_cast<double>(i));
     Checkpoint out;
@@ -93,7 +93,7 @@ TEST(
     for (const int ranks : {1, 2, 4})
         test::on_ranks(ranks, [&] {
             const Checkpoint in = Checkpoint::read(scratch("several"));
-            const auto share = in.held<double>("field").share(slabs().rank(), slabs().ranks());
+            const auto share = in.held<double>("field").share(communicator().rank(), communicator().ranks());
             std::vector<double> own(share.end - share.begin);
             in.get_part("field", std::span<double>(own), share.begin, share.all);
             for (std::size_t i = 0; i < own.size(); ++i) ASSERT_EQ(own[i], 0.5 * static_cast<double>(share.begin + i));
@@ -113,7 +113,7 @@ TEST("while a rank reads, it holds its part and a piece of the file") {
             const long before = test::held;
             test::most_held = before;
             const Checkpoint in = Checkpoint::read(scratch("large"));
-            const auto share = in.held<double>("field").share(slabs().rank(), slabs().ranks());
+            const auto share = in.held<double>("field").share(communicator().rank(), communicator().ranks());
             std::vector<double> own(share.end - share.begin);
             in.get_part("field", std::span<double>(own), share.begin, share.all);
             // a piece is 1 MiB; names, lists of ranks, pages at the ends of both: less than 64 KiB
@@ -133,7 +133,7 @@ TEST("several ranks refuse a file alike, whichever of them sees what is wrong") 
             std::ofstream(bad, std::ios::binary) << text;
             const std::string one = refusal(bad);
             EXPECT_FALSE(one.empty()) << "byte " << at;
-            test::on_ranks(3, [&] { EXPECT_EQ(refusal(bad), one) << "byte " << at << ", rank " << slabs().rank(); });
+            test::on_ranks(3, [&] { EXPECT_EQ(refusal(bad), one) << "byte " << at << ", rank " << communicator().rank(); });
         }
     }
     std::filesystem::remove(bad);
@@ -142,9 +142,9 @@ TEST("several ranks refuse a file alike, whichever of them sees what is wrong") 
     test::on_ranks(3, [&] { EXPECT_EQ(refusal(bad), one); });
     // a rank for which it is another file, as on a machine with another disk
     test::on_ranks(3, [&] {
-        const auto own = scratch("wrong_" + std::to_string(slabs().rank()));
-        std::ofstream(own, std::ios::binary) << (slabs().rank() == 1 ? whole.substr(0, 700) : whole);
-        EXPECT_NE(refusal(own).find("truncated or altered"), std::string::npos) << slabs().rank();
+        const auto own = scratch("wrong_" + std::to_string(communicator().rank()));
+        std::ofstream(own, std::ios::binary) << (communicator().rank() == 1 ? whole.substr(0, 700) : whole);
+        EXPECT_NE(refusal(own).find("truncated or altered"), std::string::npos) << communicator().rank();
     });
 }
 

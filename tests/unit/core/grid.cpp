@@ -1,4 +1,4 @@
-#include "core/grid.hpp"
+#include "parallel/grid.hpp"
 
 #include "support/test.hpp"
 

@@ -1,7 +1,7 @@
 // Arrays of which a rank holds its own planes alone: which planes those are, that there is no memory behind the others, and that nothing is
 // lost where more are opened and given back.
-#include "core/plane_store.hpp"
-#include "core/grid.hpp"
+#include "parallel/plane_store.hpp"
+#include "parallel/grid.hpp"
 #include "support/test.hpp"
 
 #include <csignal>
@@ -16,16 +16,16 @@ namespace weir {
 namespace {
 
 /// The second of three ranks, which never talks to the others.
-class Alone final : public Slabs {
+class Alone final : public Communicator {
 public:
-    Alone() : Slabs(1, 3) {}
+    Alone() : Communicator(1, 3) {}
 };
 
 /// While it lives there are three ranks of 24 planes.
 class ThreeRanks {
 public:
-    ThreeRanks() { set_slabs(std::make_unique<Alone>()); }
-    ~ThreeRanks() { set_slabs(nullptr); }
+    ThreeRanks() { set_communicator(std::make_unique<Alone>()); }
+    ~ThreeRanks() { set_communicator(nullptr); }
     ThreeRanks(const ThreeRanks&) = delete;
     ThreeRanks& operator=(const ThreeRanks&) = delete;
     const Cut cut = cut_of(24, 3);

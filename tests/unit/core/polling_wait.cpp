@@ -1,6 +1,6 @@
 // How ranks wait for one another: by polls where the processor is their own, asleep where other processes are busy. On clocks of the test's
 // own, so that nothing depends on who else is busy.
-#include "distributed/polling_wait.hpp"
+#include "parallel/mpi/polling_wait.hpp"
 
 #include "support/test.hpp"
 

@@ -1,6 +1,6 @@
 // Who owns which planes and what travels: arithmetic that all ranks do alike, against its definition; and that one rank asks for nothing.
-#include "core/grid.hpp"
-#include "core/load_balance.hpp"
+#include "parallel/grid.hpp"
+#include "parallel/load_balance.hpp"
 #include "support/test.hpp"
 
 #include <set>
@@ -75,8 +75,8 @@ TEST("what all ranks together send to one are its ghost planes, each once, from 
 }
 
 TEST("one rank owns everything, and an empty cut changes no loop") {
-    EXPECT_FALSE(slabs().several());
-    const Cut none = cut_of(10, slabs().ranks());
+    EXPECT_FALSE(communicator().several());
+    const Cut none = cut_of(10, communicator().ranks());
     const OwnPlanes mine(none);
     EXPECT_FALSE(is_distributed());
     int visited = 0;
@@ -88,13 +88,13 @@ TEST("one rank owns everything, and an empty cut changes no loop") {
     refresh(q, true, 3);
     gather(q);
     EXPECT_EQ(sum_over(q.extent(), [&](const Index<2>& I) { return q(I); }), 60);
-    EXPECT_EQ(slabs().traffic().messages, 0);
+    EXPECT_EQ(communicator().traffic().messages, 0);
 }
 
 /// Two ranks of which the other answers with a plane's own number, as a rank whose planes hold those would.
-class Echo final : public Slabs {
+class Echo final : public Communicator {
 public:
-    Echo() : Slabs(1, 2) {}
+    Echo() : Communicator(1, 2) {}
     void gather(const Cut& cut, const Planes& planes) override {
         auto* values = static_cast<real*>(planes.first);
         for (int plane = 0; plane < cut.end(0, planes.count); ++plane) values[plane] = plane;
@@ -102,7 +102,7 @@ public:
 };
 
 TEST("in parallel a loop does its own planes, and a sum adds those of all ranks in the order of the planes") {
-    set_slabs(std::make_unique<Echo>());
+    set_communicator(std::make_unique<Echo>());
     {
         const Cut cut = cut_of(16, 2);
         const OwnPlanes mine(cut);
@@ -115,7 +115,7 @@ TEST("in parallel a loop does its own planes, and a sum adds those of all ranks 
         EXPECT_FALSE(is_distributed());
         EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 0);
     }
-    set_slabs(nullptr);
+    set_communicator(nullptr);
     EXPECT_FALSE(is_distributed());
 }
 

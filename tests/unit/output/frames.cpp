@@ -2,13 +2,13 @@
 
 #include "core/error.hpp"
 #include "output/read_frame.hpp"
-#include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
 #include "sim/solid_cells.hpp"
 #include "support/fake_solver.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 #include "support/vtk_files.hpp"
+#include "surfaces/reconstruction.hpp"
 
 #include <cmath>
 #include <csignal>
@@ -140,7 +140,7 @@ TEST("a surface is written as triangles with normals, velocity and thickness, a 
             "test.toml", weir::sim::schemas());
     };
     weir::Simulation simulation(scene("output.surface = \"zhu_bridson\"\n"));
-    const std::shared_ptr<weir::reconstruction::Reconstruction> maker = weir::reconstruction::reconstruction_of(simulation.scene());
+    const std::shared_ptr<weir::surfaces::Reconstruction> maker = weir::surfaces::reconstruction_of(simulation.scene());
     weir::output::FrameOptions options;
     options.surface = [maker](const weir::FieldSet& fields, real t) -> const weir::SurfaceMesh& { return maker->make(fields, t); };
     TemporaryFolder folder, plain;
@@ -169,7 +169,7 @@ TEST("the surface of a flat liquid is written as lines with normals, velocity an
         weir::scene::parse("solver = \"pbf\"\ndim = 2\ngrid = { cells = [12, 12], size = [1, 1] }\ntime = { end = 1, dt = 0.001 }\n"
                            "liquid = [ { shape = \"box\", min = [0, 0], max = [0.5, 0.5] } ]\noutput.surface = \"anisotropic\"\n",
                            "test.toml", weir::sim::schemas()));
-    const std::shared_ptr<weir::reconstruction::Reconstruction> maker = weir::reconstruction::reconstruction_of(simulation.scene());
+    const std::shared_ptr<weir::surfaces::Reconstruction> maker = weir::surfaces::reconstruction_of(simulation.scene());
     weir::output::FrameOptions options;
     options.surface = [maker](const weir::FieldSet& fields, real t) -> const weir::SurfaceMesh& { return maker->make(fields, t); };
     TemporaryFolder folder;

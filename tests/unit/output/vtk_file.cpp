@@ -2,9 +2,8 @@
 #include "output/vtk_file.hpp"
 
 #include "core/error.hpp"
-#include "core/halo.hpp"
 #include "output/frame_files.hpp"
-#include "reconstruction/reconstruction.hpp"
+#include "parallel/partition.hpp"
 #include "sim/registry.hpp"
 #include "sim/solid_cells.hpp"
 #include "support/fake_solver.hpp"
@@ -12,6 +11,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 #include "support/vtk_writer.hpp"
+#include "surfaces/reconstruction.hpp"
 
 #include <cmath>
 #include <csignal>
@@ -109,7 +109,7 @@ TEST_IN_2D_AND_3D("surfaces are as VTK writes them, of liquid and of none") {
                       "\ngrid = { cells = " + (D == 2 ? "[12, 12], size = [1, 1]" : "[8, 8, 8], size = [1, 1, 1]") +
                       " }\ntime = { end = 1, dt = 0.001 }\noutput.surface = \"zhu_bridson\"\nliquid = [ { shape = \"box\", min = " +
                       (D == 2 ? "[0, 0], max = [0.5, 0.5]" : "[0, 0, 0], max = [0.5, 0.5, 0.5]") + " } ]\n");
-    const auto maker = reconstruction::reconstruction_of(simulation.scene());
+    const auto maker = surfaces::reconstruction_of(simulation.scene());
     for (const Compression compression : {Compression::none, Compression::zlib}) {
         const FrameOptions options{.compression = compression};
         const SurfaceMesh &mesh = maker->make(simulation.fields(), 0), none;
@@ -156,8 +156,8 @@ TEST("in parallel the file has the bytes of one process, wherever its blocks are
             const TemporaryFolder folder;
             const Cut cut{at};
             test::on_ranks(cut.ranks(), [&] {
-                const auto first = static_cast<std::size_t>(700 * cut.begin(slabs().rank())),
-                           last = static_cast<std::size_t>(700 * cut.end(slabs().rank(), 500));
+                const auto first = static_cast<std::size_t>(700 * cut.begin(communicator().rank())),
+                           last = static_cast<std::size_t>(700 * cut.end(communicator().rank(), 500));
                 Field own = field;  // no rank may read the data of others
                 for (std::size_t i = 0; i < own.values.size(); ++i)
                     if (i < first || i >= last) own.values[i] = NAN;
@@ -187,7 +187,7 @@ TEST("particles of which each rank has a part, one of them none, follow one anot
     for (const bool parts : {true, false}) {
         const TemporaryFolder folder;
         test::on_ranks(4, [&] {
-            const auto rank = static_cast<std::size_t>(slabs().rank());
+            const auto rank = static_cast<std::size_t>(communicator().rank());
             const FieldSet fields = parts ? set_of(begins[rank], begins[rank + 1], true) : set_of(0, count, false);
             output::write(folder.path() / "file", particles_of(fields, "all", 0, {}), Compression::zlib);
         });
@@ -210,7 +210,7 @@ TEST("what the first rank cannot write is an error of all; what stood there stay
                 output::write(folder.path() / "file", image_of(fields, 0, {}), compression);
                 ADD_FAILURE() << "80000 bytes of noise were written";
             } catch (const OutputError& error) {
-                if (slabs().rank() == 0) {
+                if (communicator().rank() == 0) {
                     EXPECT_NE(std::string(error.what()).find("file: File too large"), std::string::npos) << error.what();
                 }
             }

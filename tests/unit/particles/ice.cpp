@@ -1,6 +1,6 @@
 // Pieces of moving ice and walls: a dumbbell of two particles that falls on a wall, by the laws of impact.
-#include "particles/ice.hpp"
-#include "particles/flow.hpp"
+#include "particles/heat/ice.hpp"
+#include "particles/state/flow.hpp"
 #include "sph/solver.hpp"
 #include "support/test.hpp"
 

@@ -1,6 +1,6 @@
 // The kernels against mathematics: moments by GSL quadrature, derivatives by finite differences, lattice sums and neighbour counts
 // against the reference tables (data/, computed with other tools).
-#include "particles/kernels.hpp"
+#include "particles/state/kernels.hpp"
 
 #include "support/csv.hpp"
 #include "support/test.hpp"

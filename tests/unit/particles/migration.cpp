@@ -1,9 +1,9 @@
 // Particles that migrate between ranks, against the definition: the rank that owns the cell where a particle stands owns it, with all that
 // the state knows of it, and it is a ghost particle of the ranks that read that cell or one of an image of it. Each rank is a process of
 // its own.
-#include "particles/migration.hpp"
+#include "particles/ranks/migration.hpp"
 #include "core/error.hpp"
-#include "particles/pairs.hpp"
+#include "particles/threads/pairs.hpp"
 
 #include "support/forked_ranks.hpp"
 #include "support/test.hpp"
@@ -55,7 +55,7 @@ struct State {
 
     State(const Cloud& cloud, const std::function<int(int)>& rank_of) : dim(cloud.dim), numbers(static_cast<std::size_t>(dim) + 3) {
         for (int i = 0; i < cloud.count(); ++i) {
-            if (rank_of(i) != slabs().rank()) continue;
+            if (rank_of(i) != communicator().rank()) continue;
             for (std::size_t a = 0; a < static_cast<std::size_t>(dim); ++a) numbers[a].push_back(cloud.x[a][static_cast<std::size_t>(i)]);
             place().push_back(i);
             numbers[numbers.size() - 2].push_back(shown + i);
@@ -98,12 +98,12 @@ void expect_as_defined(const Cloud& cloud, State& state) {
     std::set<int> own, ghosts;
     for (int k = 0; k < all.size(); ++k) {
         const int cell = all.cells().cell_of()[static_cast<std::size_t>(k)];
-        if (!all.is_image(k) && cut.owner(cell) == slabs().rank()) own.insert(all.owner(k));
-        if (cut.reads(slabs().rank(), cell)) ghosts.insert(all.owner(k));
+        if (!all.is_image(k) && cut.owner(cell) == communicator().rank()) own.insert(all.owner(k));
+        if (cut.reads(communicator().rank(), cell)) ghosts.insert(all.owner(k));
     }
     for (const int i : own) ghosts.erase(i);
-    EXPECT_EQ(state.own(), own) << "rank " << slabs().rank();
-    EXPECT_EQ(state.ghosts(), ghosts) << "rank " << slabs().rank();
+    EXPECT_EQ(state.own(), own) << "rank " << communicator().rank();
+    EXPECT_EQ(state.ghosts(), ghosts) << "rank " << communicator().rank();
     for (int k = 0; k < static_cast<int>(state.place().size()); ++k) {
         const auto at = static_cast<std::size_t>(k), i = static_cast<std::size_t>(state.who(k));
         for (std::size_t a = 0; a < static_cast<std::size_t>(cloud.dim); ++a) ASSERT_EQ(state.numbers[a][at], cloud.x[a][i]);
@@ -114,7 +114,7 @@ void expect_as_defined(const Cloud& cloud, State& state) {
     const std::vector<int> counts = of_ranks(state.migration.own());
     EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), cloud.count());
     EXPECT_EQ(state.migration.total(), cloud.count());
-    EXPECT_EQ(state.migration.before(), std::accumulate(counts.begin(), counts.begin() + slabs().rank(), 0));
+    EXPECT_EQ(state.migration.before(), std::accumulate(counts.begin(), counts.begin() + communicator().rank(), 0));
 }
 
 TEST(
@@ -172,17 +172,17 @@ TEST("a particle goes to a neighbour below or above, to a rank that is none, and
                                            {from_3, 0.02, 0},
                                            {from_3, 0.98, 3}}) {
                 const int was = owner(i);
-                const std::int64_t sent = slabs().traffic().bytes;
+                const std::int64_t sent = communicator().traffic().bytes;
                 const std::set<int> own = state.own();
                 cloud.put(i, 0.5, y);
                 state.follow(cloud);
                 EXPECT_EQ(owner(i), to) << "to " << y;
                 std::set<int> expected = own;
-                if (slabs().rank() == was) expected.erase(i);
-                if (slabs().rank() == to) expected.insert(i);
-                EXPECT_EQ(state.own(), expected) << "rank " << slabs().rank() << ", to " << y;
+                if (communicator().rank() == was) expected.erase(i);
+                if (communicator().rank() == to) expected.insert(i);
+                EXPECT_EQ(state.own(), expected) << "rank " << communicator().rank() << ", to " << y;
                 expect_as_defined(cloud, state);
-                EXPECT_GT(slabs().traffic().bytes, sent);
+                EXPECT_GT(communicator().traffic().bytes, sent);
             }
         },
         true);
@@ -198,8 +198,8 @@ TEST("a particle near a side that repeats is shown to the rank at the other end"
             State state(cloud, [](int i) { return i % 4; });
             state.follow(cloud);
             expect_as_defined(cloud, state);
-            EXPECT_EQ(state.own().count(0), slabs().rank() == 0 ? 1u : 0u);
-            EXPECT_EQ(state.ghosts().count(0), slabs().rank() == 3 ? 1u : 0u);
+            EXPECT_EQ(state.own().count(0), communicator().rank() == 0 ? 1u : 0u);
+            EXPECT_EQ(state.ghosts().count(0), communicator().rank() == 3 ? 1u : 0u);
         },
         true);
 }
@@ -219,7 +219,7 @@ TEST("a rank whose cells have run empty owns nothing and holds what it reads, an
             state.follow(low);
             expect_as_defined(low, state);
             EXPECT_EQ(of_ranks(state.migration.own()), (std::vector<int>{399, 0, 0, 1}));
-            EXPECT_EQ(slabs().rank() == 2, state.place().empty()) << "rank 1 reads the lowest cells, and rank 2 none that holds any";
+            EXPECT_EQ(communicator().rank() == 2, state.place().empty()) << "rank 1 reads the lowest cells, and rank 2 none that holds any";
             state.follow(cloud);
             expect_as_defined(cloud, state);
             EXPECT_GT(state.migration.own(), 0);
@@ -269,7 +269,7 @@ TEST(
         for (std::size_t c = 0; c + 1 < all.cells().start().size(); ++c)
             fullest = std::max(fullest, all.cells().start()[c + 1] - all.cells().start()[c]);
         EXPECT_LE(state.migration.own(), 1000 + fullest);
-        EXPECT_GT(slabs().largest(crowded), 1000 + fullest) << "the cloud was not crowded enough to tell";
+        EXPECT_GT(communicator().largest(crowded), 1000 + fullest) << "the cloud was not crowded enough to tell";
     });
 }
 
@@ -279,7 +279,7 @@ TEST("a position that is not finite on one rank fails all of them") {
         cloud.scatter(90, 7);
         State state(cloud, [](int i) { return i / 30; });
         cloud.x[1][45] = std::nan("");
-        EXPECT_THROW(state.follow(cloud), NumericalFailure) << "rank " << slabs().rank();
+        EXPECT_THROW(state.follow(cloud), NumericalFailure) << "rank " << communicator().rank();
     });
 }
 

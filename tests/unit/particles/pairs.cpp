@@ -1,9 +1,9 @@
 // The neighbour list of the fast path: its sets are those of brute force and of nanoflann, on random, clustered, coincident points and
 // points on the borders of cells, and their order; periodic images; sweeps in lanes; lattice counts from the reference table.
-#include "particles/pairs.hpp"
+#include "particles/threads/pairs.hpp"
 #include "core/error.hpp"
-#include "particles/fluid.hpp"
-#include "particles/neighbours.hpp"
+#include "particles/reference/neighbours.hpp"
+#include "particles/state/fluid.hpp"
 
 #include "support/csv.hpp"
 #include "support/test.hpp"

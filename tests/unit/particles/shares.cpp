@@ -1,7 +1,7 @@
 // Who computes which particles over several ranks, against one process: from its own particles and those shown to it, in any order, a rank
 // sorts what it owns as one process does, with the same neighbours, and what it has of others comes from their owners.
-#include "particles/shares.hpp"
-#include "particles/pairs.hpp"
+#include "particles/ranks/shares.hpp"
+#include "particles/threads/pairs.hpp"
 
 #include "support/test.hpp"
 
@@ -16,9 +16,9 @@ using namespace weir::particles;
 namespace {
 
 /// A rank that is alone: what it would send goes nowhere.
-class Alone final : public Slabs {
+class Alone final : public Communicator {
 public:
-    Alone(int rank, int ranks) : Slabs(rank, ranks) {}
+    Alone(int rank, int ranks) : Communicator(rank, ranks) {}
     bool poisons() const override { return true; }
 };
 
@@ -71,10 +71,10 @@ struct Shared {
             box.hi[a] = *std::max_element(c.x[a].begin(), c.x[a].end());
         }
         for (int r = 0; r < count; ++r) {
-            set_slabs(std::make_unique<Alone>(r, count));
+            set_communicator(std::make_unique<Alone>(r, count));
             ranks.push_back(rank(c, r, box));
         }
-        set_slabs(nullptr);
+        set_communicator(nullptr);
     }
     /// By the definition: it holds what stands in its cells, and what it reads there or of an image there.
     Rank rank(const Cloud& c, int r, const Box& box) const {

@@ -1,6 +1,6 @@
 // Where walls and solids stand near one particle: what each hides of the other by how they face, and that the gradient is one.
-#include "particles/kernels.hpp"
-#include "particles/passes.hpp"
+#include "particles/state/kernels.hpp"
+#include "particles/threads/passes.hpp"
 
 #include "support/test.hpp"
 

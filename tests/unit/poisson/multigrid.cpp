@@ -1,7 +1,7 @@
 // What the multigrid promises beyond the right answer: a symmetric preconditioner, the same bits on any number of threads, no allocation.
 #include "poisson/poisson.hpp"
 
-#include "poisson/geometric_cg.hpp"
+#include "poisson/geometric/geometric_cg.hpp"
 #include "problems.hpp"
 #include "support/count_allocations.hpp"
 #include "support/test.hpp"

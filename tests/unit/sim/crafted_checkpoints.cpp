@@ -47,7 +47,7 @@ Blocks blocks_of(const fs::path& file) {
 void write(const fs::path& file, const Blocks& blocks, std::uint64_t extra = 0) {
     std::string bytes = "weircp01" + text_of(blocks.size() + extra);
     for (const auto& [name, content] : blocks) bytes += text_of(name.size()) + name + text_of(content.size()) + content;
-    std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, as core/checkpoint.cpp has it
+    std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a, as parallel/checkpoint_file.cpp has it
     for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
     std::ofstream(file, std::ios::binary) << bytes << text_of(hash);
 }

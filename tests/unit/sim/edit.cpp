@@ -1,5 +1,5 @@
 // Edits of a run between two steps: what is written is checked and made good, what comes and goes is counted, who looks on is called.
-#include "core/slabs.hpp"
+#include "parallel/communicator.hpp"
 #include "shared/device.hpp"
 #include "sim/registry.hpp"
 #include "support/fake_solver.hpp"
@@ -120,8 +120,8 @@ TEST("in parallel edits are refused by name before anything is touched, and noth
     const std::vector<Vec<3>> at{{{0.5, 0.5, 0}}};
     const std::vector<std::size_t> which{0};
     {
-        set_slabs(std::make_unique<Slabs>(0, 2));
-        const std::unique_ptr<void, void (*)(void*)> alone_again(&water, [](void*) { set_slabs(nullptr); });
+        set_communicator(std::make_unique<Communicator>(0, 2));
+        const std::unique_ptr<void, void (*)(void*)> alone_again(&water, [](void*) { set_communicator(nullptr); });
         bool written = false;
         expect_in(refusal([&] { water.edit("velocity", [&](FieldEdit&) { written = true; }); }),
                   "\"velocity\" is edited in one process only, and the number of ranks is 2");

@@ -2,7 +2,7 @@
 #include "validation/stability/command.hpp"
 
 #include "core/error.hpp"
-#include "flow/solver.hpp"
+#include "smoke/solver.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -211,7 +211,7 @@ TEST("each kind of invariant is watched after every step; an axis without its ow
 }
 
 /// The real solver, but for one of its integrals, which is off after the first step.
-struct OffByOne final : flow::FlowSolver<2> {
+struct OffByOne final : smoke::FlowSolver<2> {
     std::string name;
     real by;
     OffByOne(const scene::Scene& scene, std::string name_, real by_) : FlowSolver(scene), name(std::move(name_)), by(by_) {}
@@ -232,7 +232,7 @@ TEST("each watch of hard_melting sees its own number leave its bound") {
     Stress stress = *of_mac;
     stress.steps = 2, stress.preconditions.clear();
     const auto broke = [&](const std::string& name, real by) {
-        auto kind = flow::kind();
+        auto kind = smoke::kind();
         kind.make = [&, name, by](const scene::Scene& scene) { return std::make_unique<OffByOne>(scene, name, by); };
         return push(stress, 1, {kind});
     };

@@ -1,6 +1,6 @@
 // The extrapolation finds its fronts by rows and its neighbours by their place in memory; here it is held against the same visits written
 // plainly, face by face.
-#include "surface/extrapolate.hpp"
+#include "free_surface/extrapolate.hpp"
 #include "support.hpp"
 
 using namespace weir;

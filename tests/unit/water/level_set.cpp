@@ -1,6 +1,6 @@
-#include "surface/level_set.hpp"
+#include "free_surface/level_set.hpp"
+#include "free_surface/extrapolate.hpp"
 #include "support.hpp"
-#include "surface/extrapolate.hpp"
 #include "water/solver.hpp"
 
 using namespace weir;

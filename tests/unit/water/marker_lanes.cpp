@@ -1,8 +1,8 @@
 // The markers of a cell are moved, and exchange momentum with the faces, together; here each is held against interpolation at its own
 // place.
+#include "free_surface/extrapolate.hpp"
+#include "free_surface/marker_motion.hpp"
 #include "support.hpp"
-#include "surface/extrapolate.hpp"
-#include "surface/marker_motion.hpp"
 #include "water/transfer.hpp"
 
 #include <atomic>

@@ -1,6 +1,6 @@
-#include "surface/markers.hpp"
+#include "free_surface/markers.hpp"
+#include "free_surface/marker_motion.hpp"
 #include "support.hpp"
-#include "surface/marker_motion.hpp"
 
 #include <algorithm>
 

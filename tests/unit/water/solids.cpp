@@ -1,7 +1,7 @@
 // Water beside solids that cut its cells: it slides along them without losing or gaining speed, and no transfer feeds on what stands
 // inside them.
+#include "free_surface/solid_faces.hpp"
 #include "support.hpp"
-#include "surface/solid_faces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,12 +103,12 @@ solids = [ {{ shape = "sphere", centre = {}, radius = 0.23 }} ]
 )",
                                 D, list({"16", "16", "16"}, D), list({"1.0", "1.0", "1.0"}, D), list({"0.0", "0.0", "0.0"}, D),
                                 list({"0.1", "1.0", "1.0"}, D), list({"0.5", "0.5", "0.5"}, D)));
-    staggered::MacState<D> state(scene, FieldPlan{});
-    const surface::Frame<D> frame(state.u, state.sides);
-    staggered::SolidPlacement<D> placement(geometry::Solids<D>(scene.root().tables("solids")), state);
-    surface::FacesInSolids<D> in_solids;
+    mac::MacState<D> state(scene, FieldPlan{});
+    const free_surface::Frame<D> frame(state.u, state.sides);
+    mac::SolidPlacement<D> placement(geometry::Solids<D>(scene.root().tables("solids")), state);
+    free_surface::FacesInSolids<D> in_solids;
     in_solids.find(placement, state, frame, true);
-    surface::FaceMarks<D> known;
+    free_surface::FaceMarks<D> known;
     for (int a = 0; a < D; ++a) {
         known[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state.u[a].extent());
         known[static_cast<std::size_t>(a)].fill(a == 1 ? 1 : 0);

@@ -1,14 +1,14 @@
 // The conserved liquid part of cells: plane cuts, transport, and what scenes in which water breaks up keep of it.
+#include "free_surface/plane_cut.hpp"
+#include "free_surface/volume_fraction.hpp"
 #include "support.hpp"
-#include "surface/plane_cut.hpp"
-#include "surface/volume_fraction.hpp"
 
 #include <cmath>
 #include <string>
 
 using namespace weir;
 using namespace weir::test;
-using namespace weir::surface;
+using namespace weir::free_surface;
 
 namespace {
 
@@ -123,7 +123,7 @@ TEST_IN_2D_AND_3D("liquid parts stay as they were where nothing moves") {
 
 TEST_IN_2D_AND_3D("in a flow without divergence parts stay in [0, 1] and keep their sum to round-off") {
     const water::Water<D> water(water_scene(dam_break<D>()));
-    staggered::MacState<D> state = water.state();
+    mac::MacState<D> state = water.state();
     const Frame<D> frame(state.u, state.sides);
     const real h = frame.h_min();
     const auto stream = [&](const Index<D>& I) { return std::sin(pi * I[0] * h) * std::sin(pi * I[1] * h) / pi; };  // 0 on the walls

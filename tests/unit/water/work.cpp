@@ -1,5 +1,5 @@
 // What a step takes of each plane, and the cuts that follow from it.
-#include "core/load_balance.hpp"
+#include "parallel/load_balance.hpp"
 #include "support.hpp"
 
 #include <numeric>

@@ -1,0 +1,52 @@
+#include "mac/grid/own_planes.hpp"
+
+#include "geometry/sides.hpp"
+#include "mac/grid/state.hpp"
+#include "parallel/load_balance.hpp"
+#include "poisson/poisson.hpp"
+
+namespace weir::mac {
+
+namespace {
+
+const poisson::Method& method_of(const scene::Scene& scene) { return poisson::method_named(scene.root().text("scheme.poisson.method")); }
+
+}  // namespace
+
+bool holds_own_planes(const scene::Scene& scene, const Cut& cut) {
+    return !communicator().holds_whole() && could_hold_own_planes(scene, cut);
+}
+
+bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
+    if (cut.empty()) return false;
+    if (!method_of(scene).distributed_levels) return false;
+    const auto shares = [&]<int D>() {
+        const Lattice<D> lattice(scene);
+        const geometry::Sides<D> sides(scene);
+        Vec<D> weight;
+        std::array<bool, D> periodic;
+        for (int a = 0; a < D; ++a) {
+            const real ratio = lattice.h[0] / lattice.h[a];
+            weight[a] = ratio * ratio, periodic[static_cast<std::size_t>(a)] = sides.periodic(a);
+        }
+        return poisson::multigrid_shares<D>(lattice.cells, periodic, weight, cut);
+    };
+    return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
+}
+
+std::string replicated_pressure(const scene::Scene& scene, const Cut& cut) {
+    if (could_hold_own_planes(scene, cut)) return "the levels of the pressure of fewer than 20,000 cells";
+    if (method_of(scene).distributed_levels) return "the levels of the pressure, all of them";
+    return method_of(scene).needs_petsc ? "the matrix of the pressure" : "the pressure";
+}
+
+template <int D>
+HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach) {
+    const Cut cut = cut_in_scope(scene.index<D>("grid.cells")[D - 1]);
+    return HeldPlanes(cut, holds_own_planes(scene, cut), ghost_planes, geometry::Sides<D>(scene).periodic(D - 1), reach);
+}
+
+template HeldPlanes held_planes<2>(const scene::Scene& scene, int ghost_planes, int reach);
+template HeldPlanes held_planes<3>(const scene::Scene& scene, int ghost_planes, int reach);
+
+}  // namespace weir::mac

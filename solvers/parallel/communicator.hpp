@@ -1,0 +1,219 @@
+// One run distributed over several processes (MPI ranks). Each rank owns a slab of planes along the slowest axis and computes them as one
+// process would. Ghost planes are filled by halo exchange. Sums are taken per plane and added in the order of the planes, so results are
+// bitwise equal for any number of ranks. With one rank, the default, every call does nothing.
+#pragma once
+#include "core/error.hpp"
+#include "parallel/partition.hpp"
+
+#include <algorithm>
+#include <climits>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace weir {
+
+/// The planes of an array along the slowest axis, contiguous in memory: plane 0 is at `first`, with `margin` more planes before it and
+/// after the last.
+struct Planes {
+    void* first;
+    std::size_t bytes;  // of a plane
+    int count;
+    int margin = 0;
+    const char* held = nullptr;  // per plane, whether it has memory; nullptr: all have
+};
+
+/// A message sent to another rank and the one received from it; both sides know the sizes beforehand. No message is sent for 0 bytes.
+struct Message {
+    int peer;
+    const void* sent;
+    std::size_t sent_bytes;
+    void* received;
+    std::size_t received_bytes;
+};
+
+/// Messages and bytes that this rank has sent so far.
+struct Traffic {
+    std::int64_t messages = 0, bytes = 0;
+};
+
+class Communicator {
+public:
+    Communicator() = default;
+    Communicator(int rank, int ranks) : rank_(rank), ranks_(ranks) {}
+    virtual ~Communicator() = default;
+    Communicator(const Communicator&) = delete;
+    Communicator& operator=(const Communicator&) = delete;
+
+    int rank() const { return rank_; }
+    int ranks() const { return ranks_; }
+    bool several() const { return ranks_ > 1; }
+    const Traffic& traffic() const { return traffic_; }
+
+    /// Halo exchange: fills `ghost_planes` planes of each array on both sides of this rank's subdomain from their owners, in one message
+    /// per rank. `ring`: also around the ends of a periodic axis.
+    virtual void refresh(const Cut&, std::span<const Planes>, int /*ghost_planes*/, bool /*ring*/) {}
+    void refresh(const Cut& cut, const Planes& planes, int ghost_planes, bool ring) {
+        refresh(cut, std::span(&planes, 1), ghost_planes, ring);
+    }
+    /// All-gather of planes: receives every plane that this rank does not own.
+    virtual void gather(const Cut&, const Planes&) {}
+    /// Streams the bytes of all ranks, in rank order, to rank 0: sink(data, count) is called there for each piece. An exception of the sink
+    /// is rethrown after all data has been received.
+    virtual void stream_to_first(const void* own, std::size_t bytes, const std::function<void(const void*, std::size_t)>& sink) {
+        sink(own, bytes);
+    }
+    /// All-gather of entries that are not planes: rank r owns the entries [begins[r], begins[r + 1]), of `bytes` each.
+    virtual void gather_parts(void* /*entries*/, std::size_t /*bytes*/, std::span<const std::size_t> /*begins*/) {}
+    /// Point-to-point exchange of other data, at most one message per rank.
+    virtual void exchange(std::span<const Message>) {}
+    /// Returns whether stale (unfilled) ghosts are set to NaN, for a test: no code may read them.
+    virtual bool poisons() const { return false; }
+    /// Returns whether whole fields are read on all ranks, so that each rank must store them whole.
+    bool holds_whole() const { return holds_whole_; }
+    void hold_whole(bool yes) { holds_whole_ = yes; }
+    /// Returns whether objects built now belong to this rank alone, as in one process: to measure their memory.
+    bool builds_serial() const { return builds_serial_; }
+    void build_serial(bool yes) { builds_serial_ = yes; }
+    /// Maximum of a value over the ranks.
+    virtual int largest(int value) { return value; }
+    /// Barrier with a timeout: returns false where a rank is still missing after `seconds`. A rank that failed alone never arrives.
+    virtual bool all_arrive(double /*seconds*/) { return true; }
+    /// Ends all ranks at once, with this exit code.
+    virtual void abort(int /*exit_code*/) {}
+
+protected:
+    Traffic traffic_;
+
+private:
+    int rank_ = 0, ranks_ = 1;
+    bool holds_whole_ = false, builds_serial_ = false;
+};
+
+/// The communicator of this process: one rank, unless set_communicator was called.
+Communicator& communicator();
+/// nullptr: back to one rank.
+void set_communicator(std::unique_ptr<Communicator> several);
+
+/// All-gather of one value per rank, in rank order.
+template <class T>
+std::vector<T> of_ranks(const T& own) {
+    std::vector<T> list(static_cast<std::size_t>(communicator().ranks()), own);
+    std::vector<std::size_t> begins(list.size() + 1);
+    std::iota(begins.begin(), begins.end(), std::size_t{0});
+    communicator().gather_parts(list.data(), sizeof(T), begins);
+    return list;
+}
+
+/// Offsets of the ranks' lists in their concatenation, where this rank has `count` entries; the last offset is the total.
+inline std::vector<std::size_t> begins_of_ranks(std::size_t count) {
+    std::vector<std::size_t> begins{0};
+    for (const std::size_t entries : of_ranks(count)) begins.push_back(begins.back() + entries);
+    return begins;
+}
+
+/// All-gather of lists: concatenates the lists of all ranks.
+template <class T>
+std::vector<T> of_all_ranks(const std::vector<T>& own) {
+    const std::vector<std::size_t> begins = begins_of_ranks(own.size());
+    std::vector<T> all(begins.back());
+    std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(begins[static_cast<std::size_t>(communicator().rank())]));
+    communicator().gather_parts(all.data(), sizeof(T), begins);
+    return all;
+}
+
+/// Runs f on rank 0 only: writing. If it fails, all ranks fail with the same exit code; rank 0's message is shown.
+template <class F>
+void by_first_rank(F&& f) {
+    if (!communicator().several()) return f();
+    std::exception_ptr failure;
+    if (communicator().rank() == 0) try {
+            f();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+    if (communicator().largest(failure ? 1 : 0) == 0) return;
+    if (failure) std::rethrow_exception(failure);
+    throw OutputError("rank 0 could not write");
+}
+
+namespace detail {
+
+/// The range of loops over planes: planes [begin, end) of cells. Planes beyond the ends of the axis belong to its first and last plane.
+struct OwnShare {
+    int begin = INT_MIN, end = INT_MAX;
+    const Cut* cut = nullptr;  // nullptr: all planes
+    int reach = 0;             // depth to which ghost planes are filled
+    int kept = 0;              // ghost planes stored by an array constructed now; 0: whole arrays
+    bool ring = false;         // also around the ends of a periodic axis
+    int lower(int lo) const { return lo > begin ? lo : begin; }
+    int upper(int hi) const { return hi < end ? hi : end; }
+};
+inline OwnShare own_share;
+
+}  // namespace detail
+
+/// Scope in which loops run over this rank's planes, and sums over planes are global. Arrays constructed in it store these planes and
+/// `kept` ghost planes (parallel/plane_store.hpp), or all planes where `kept` is 0. An empty partition changes nothing.
+class OwnPlanes {
+public:
+    explicit OwnPlanes(const Cut& cut, int reach = 1, int kept = 0, bool ring = false);
+    ~OwnPlanes() { detail::own_share = before_; }
+    OwnPlanes(const OwnPlanes&) = delete;
+    OwnPlanes& operator=(const OwnPlanes&) = delete;
+
+private:
+    detail::OwnShare before_;
+};
+
+/// Scope in which loops also run over this many ghost planes on both sides: redundant local work instead of communication.
+class WiderPlanes {
+public:
+    explicit WiderPlanes(int planes) : before_(detail::own_share) {
+        if (before_.begin != INT_MIN) detail::own_share.begin -= planes;
+        if (before_.end != INT_MAX) detail::own_share.end += planes;
+    }
+    ~WiderPlanes() { detail::own_share = before_; }
+    WiderPlanes(const WiderPlanes&) = delete;
+    WiderPlanes& operator=(const WiderPlanes&) = delete;
+
+private:
+    detail::OwnShare before_;
+};
+
+/// Scope of replicated work: every rank does the same work and gets the same result. `really` false: no effect.
+class AllPlanes {
+public:
+    explicit AllPlanes(bool really = true) : before_(detail::own_share) {
+        if (really) detail::own_share = {};
+    }
+    ~AllPlanes() { detail::own_share = before_; }
+    AllPlanes(const AllPlanes&) = delete;
+    AllPlanes& operator=(const AllPlanes&) = delete;
+
+private:
+    detail::OwnShare before_;
+};
+
+/// Sets the depth to which ghost planes are filled from here on: the largest displacement in a step.
+inline void set_reach(int planes) { detail::own_share.reach = planes; }
+
+/// Returns whether loops over planes are distributed over several ranks.
+inline bool is_distributed() { return detail::own_share.cut != nullptr; }
+
+/// Returns whether the current loop range includes this plane.
+inline bool is_own_plane(int plane) { return plane >= detail::own_share.begin && plane < detail::own_share.end; }
+
+/// Sum of a value over the ranks; in one process, or for replicated work, the value itself.
+inline std::int64_t sum_of_ranks(std::int64_t own) {
+    if (!is_distributed()) return own;
+    const std::vector<std::int64_t> list = of_ranks(own);
+    return std::accumulate(list.begin(), list.end(), std::int64_t{0});
+}
+
+}  // namespace weir

@@ -1,0 +1,192 @@
+// A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis. Sums are taken per plane
+// and added in the order of the planes, so results do not depend on the number of threads or ranks (parallel/communicator.hpp).
+#pragma once
+#include "core/parallel.hpp"
+#include "core/types.hpp"
+#include "parallel/communicator.hpp"
+#include "parallel/plane_store.hpp"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace weir {
+
+/// Values of type T on a box of `extent` entries. Entry (i, j, k) is at i + n_x (j + n_y k).
+template <class T, int D>
+class Grid {
+public:
+    Grid() { extent_.fill(0); }
+    /// `margin`: number of extra planes before the first and after the last plane of cells.
+    explicit Grid(const Index<D>& extent, const T& value = T{}, int margin = 0)
+        : extent_(extent), data_(0, plane_of(extent), extent[D - 1] - 2 * margin, margin, value) {}
+
+    const Index<D>& extent() const { return extent_; }
+    std::size_t size() const { return data_.size(); }
+    bool empty() const { return data_.size() == 0; }
+    /// Distance in memory between neighbours along an axis, in entries.
+    std::ptrdiff_t stride(int axis) const {
+        std::ptrdiff_t s = 1;
+        for (int d = 0; d < axis; ++d) s *= extent_[d];
+        return s;
+    }
+    std::size_t linear(const Index<D>& I) const {
+        std::size_t at = 0;
+        for (int d = D - 1; d >= 0; --d) at = at * static_cast<std::size_t>(extent_[d]) + static_cast<std::size_t>(I[d]);
+        return at;
+    }
+    bool contains(const Index<D>& I) const {
+        for (int d = 0; d < D; ++d)
+            if (I[d] < 0 || I[d] >= extent_[d]) return false;
+        return true;
+    }
+    T& operator()(const Index<D>& I) { return data_.data()[linear(I)]; }
+    const T& operator()(const Index<D>& I) const { return data_.data()[linear(I)]; }
+    T& operator[](std::size_t i) { return data_.data()[i]; }
+    const T& operator[](std::size_t i) const { return data_.data()[i]; }
+    T* data() { return data_.data(); }
+    const T* data() const { return data_.data(); }
+    std::span<const T> values() const { return {data_.data(), data_.size()}; }
+    std::span<T> values() { return {data_.data(), data_.size()}; }
+    void fill(const T& value) { data_.fill(value); }
+    std::size_t bytes() const { return data_.bytes(); }
+    /// The planes in this rank's memory, own and ghost: see PlaneStore.
+    const PlaneStore<T>& store() const { return data_; }
+    PlaneStore<T>& store() { return data_; }
+    void swap(Grid& other) {
+        std::swap(extent_, other.extent_);
+        data_.swap(other.data_);
+    }
+
+private:
+    static std::size_t plane_of(const Index<D>& extent) {
+        std::size_t entries = 1;
+        for (int d = 0; d + 1 < D; ++d) entries *= static_cast<std::size_t>(extent[d]);
+        return entries;
+    }
+    Index<D> extent_;
+    PlaneStore<T> data_;
+};
+
+/// f(plane) for this rank's planes within [lo, hi), in contiguous blocks, one per thread.
+template <class F>
+void for_each_plane(int lo, int hi, F&& f) {
+    parallel_for(detail::own_share.lower(lo), detail::own_share.upper(hi), f);
+}
+
+namespace detail {
+/// f of all planes: computed here for this rank's planes, received from the owner for the others.
+template <class F>
+const std::vector<real>& parts_of_planes(int planes, F&& f) {
+    auto& part = reduction_scratch(static_cast<std::size_t>(planes));
+    for_each_plane(0, planes, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+    if (is_distributed()) communicator().gather(*own_share.cut, {part.data(), sizeof(real), planes});
+    return part;
+}
+}  // namespace detail
+
+/// f(0) + f(1) + ... over planes, added in that order.
+template <class F>
+real plane_sum(int planes, F&& f) {
+    return detail::sum_in_order(detail::parts_of_planes(planes, f), planes);
+}
+
+/// The largest of f over planes; NaN if any is NaN.
+template <class F>
+real plane_max(int planes, F&& f) {
+    return detail::largest_of(detail::parts_of_planes(planes, f), planes);
+}
+
+template <class T, int D>
+Planes planes_of(Grid<T, D>& q) {
+    return {q.data(), sizeof(T) * static_cast<std::size_t>(q.stride(D - 1)), q.extent()[D - 1], 0, q.store().held()};
+}
+/// Halo exchange: fills `ghost_planes` planes on both sides of this rank's subdomain.
+template <class T, int D>
+void refresh(Grid<T, D>& q, bool ring, int ghost_planes = 1) {
+    if (!is_distributed()) return;
+    q.store().open(ghost_planes, ring);
+    communicator().refresh(*detail::own_share.cut, planes_of(q), ghost_planes, ring);
+}
+/// All-gather: every rank receives all planes.
+template <class T, int D>
+void gather(Grid<T, D>& q) {
+    if (!is_distributed()) return;
+    q.store().open_all();
+    communicator().gather(*detail::own_share.cut, planes_of(q));
+}
+
+/// f(I) for every I in [lo, hi), threaded over the slowest axis; x runs innermost.
+template <int D, class F>
+void for_each_in(const Index<D>& lo, const Index<D>& hi, F&& f) {
+    for (int d = 0; d < D; ++d)
+        if (hi[d] <= lo[d]) return;
+    for_each_plane(lo[D - 1], hi[D - 1], [&](int outer) {
+        Index<D> I = lo;
+        I[D - 1] = outer;
+        if constexpr (D == 2) {
+            for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
+        } else {
+            for (I[1] = lo[1]; I[1] < hi[1]; ++I[1])
+                for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
+        }
+    });
+}
+
+/// The same; for an array of distributed storage, over all planes that this rank stores.
+template <class T, int D, class F>
+void for_each_held(const Grid<T, D>& q, const Index<D>& lo, const Index<D>& hi, F&& f) {
+    if (!q.store().windowed()) return for_each_in(lo, hi, f);
+    const auto before = detail::own_share;
+    for (int plane = lo[D - 1]; plane < hi[D - 1]; ++plane) {
+        if (!q.store().holds(plane)) continue;
+        Index<D> first = lo, last = hi;
+        first[D - 1] = plane, last[D - 1] = plane + 1;
+        detail::own_share.begin = plane, detail::own_share.end = plane + 1;
+        for_each_in(first, last, f);
+    }
+    detail::own_share = before;
+}
+
+/// f(I) for every entry of a box of `extent` entries.
+template <int D, class F>
+void for_each_cell(const Index<D>& extent, F&& f) {
+    for_each_in(Index<D>::constant(0), extent, f);
+}
+
+/// Sum of f(I) over a box, per plane of the slowest axis and then in the order of the planes: bitwise equal for any thread count.
+template <int D, class F>
+real sum_over(const Index<D>& extent, F&& f) {
+    return plane_sum(extent[D - 1], [&](int outer) {
+        Index<D> I{};
+        I[D - 1] = outer;
+        real sum = 0;
+        if constexpr (D == 2) {
+            for (I[0] = 0; I[0] < extent[0]; ++I[0]) sum += f(I);
+        } else {
+            for (I[1] = 0; I[1] < extent[1]; ++I[1])
+                for (I[0] = 0; I[0] < extent[0]; ++I[0]) sum += f(I);
+        }
+        return sum;
+    });
+}
+
+/// Largest f(I) over a box; NaN if any is NaN (so that a maximum never hides one). -infinity for an empty box.
+template <int D, class F>
+real max_over(const Index<D>& extent, F&& f) {
+    return plane_max(extent[D - 1], [&](int outer) {
+        Index<D> I{};
+        I[D - 1] = outer;
+        real m = -infinity;
+        const auto see = [&](real value) { m = (value > m || std::isnan(value)) ? value : m; };
+        if constexpr (D == 2) {
+            for (I[0] = 0; I[0] < extent[0]; ++I[0]) see(f(I));
+        } else {
+            for (I[1] = 0; I[1] < extent[1]; ++I[1])
+                for (I[0] = 0; I[0] < extent[0]; ++I[0]) see(f(I));
+        }
+        return m;
+    });
+}
+
+}  // namespace weir

@@ -1,0 +1,77 @@
+// Load balancing where planes differ in work: water that fills the lower half of a tank, a valley between hills.
+#pragma once
+#include "parallel/communicator.hpp"
+#include "parallel/partition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace weir {
+
+/// Partitions the planes so that their work is as even as boundaries at multiples of 8 planes allow (of fewer where there are few planes,
+/// as in cut_of). Each rank gets at least one such slab. Planes without work still belong to the slab of their owner. One rank gets no
+/// partition.
+inline Cut load_balanced_cut(std::span<const std::int64_t> work, int ranks) {
+    const int planes = static_cast<int>(work.size());
+    Cut cut = cut_of(planes, ranks);
+    if (ranks == 1) return cut;
+    int unit = 8;
+    while (unit > 1 && planes / unit < ranks) unit /= 2;
+    const int units = planes / unit;
+    std::vector<std::int64_t> before{0};  // cumulative work before each unit
+    for (int u = 0; u < units; ++u) {
+        before.push_back(before.back());
+        for (int q = u * unit; q < (u + 1 == units ? planes : (u + 1) * unit); ++q) before.back() += work[static_cast<std::size_t>(q)];
+    }
+    if (before.back() == 0) return cut;
+    int last = 0;
+    for (int r = 1; r < ranks; ++r) {
+        const double share = static_cast<double>(before.back()) * r / ranks;
+        const auto off = [&](int u) { return std::abs(static_cast<double>(before[static_cast<std::size_t>(u)]) - share); };
+        int best = last + 1;
+        for (int u = best; u <= units - (ranks - r); ++u)
+            if (off(u) < off(best)) best = u;
+        cut.at[static_cast<std::size_t>(r)] = unit * best;
+        last = best;
+    }
+    return cut;
+}
+
+/// The work of the rank that has the most.
+inline std::int64_t largest_share(std::span<const std::int64_t> work, const Cut& cut) {
+    std::int64_t most = 0;
+    for (int r = 0; r < cut.ranks(); ++r) {
+        const auto own =
+            work.subspan(static_cast<std::size_t>(cut.begin(r)), static_cast<std::size_t>(cut.end(r, cut.planes()) - cut.begin(r)));
+        most = std::max(most, std::accumulate(own.begin(), own.end(), std::int64_t{0}));
+    }
+    return most;
+}
+
+namespace detail {
+inline const Cut* scope_cut = nullptr;
+}
+
+/// Scope in which new solvers use this partition. The caller knows the work of the planes; all ranks must pass the same partition.
+class PartitionScope {
+public:
+    explicit PartitionScope(const Cut& cut) : before_(detail::scope_cut) { detail::scope_cut = &cut; }
+    ~PartitionScope() { detail::scope_cut = before_; }
+    PartitionScope(const PartitionScope&) = delete;
+    PartitionScope& operator=(const PartitionScope&) = delete;
+
+private:
+    const Cut* before_;
+};
+
+/// The partition of the scope above; without one, equal numbers of planes for all ranks.
+inline Cut cut_in_scope(int planes) {
+    if (detail::scope_cut && !detail::scope_cut->empty() && detail::scope_cut->planes() == planes) return *detail::scope_cut;
+    return cut_of(planes, communicator().ranks());
+}
+
+}  // namespace weir

@@ -1,0 +1,27 @@
+// A program that mpirun has started several times: how the processes join and how they end together.
+#pragma once
+#include <string>
+
+namespace weir::distributed {
+
+/// The number of processes started together, and the rank of this one, from the environment of mpirun, mpiexec or srun; 1 and 0 without a
+/// launcher.
+int started_ranks();
+int started_rank();
+
+/// Default number of threads for each rank of this machine. 0: as for one process, because there is only one or because mpirun bound each
+/// rank to its own processors.
+int threads_of_rank();
+
+/// Makes communicator() the communicator of all ranks and hides the output of ranks other than 0. Throws BadInput where this weir was built
+/// without MPI. Does nothing for one process.
+void join();
+
+/// Total time in which this rank slept while waiting because other processes used its processor [s].
+double busy_seconds();
+
+/// Ends the program on all ranks. Where all ranks arrive they exit one after another and the result is `exit_code`. Where one failed alone,
+/// the others never arrive: it prints `complaint` (which rank 0 has printed where all failed alike) and aborts all ranks.
+int leave(int exit_code, const std::string& complaint);
+
+}  // namespace weir::distributed
