@@ -381,7 +381,7 @@ double bytes_of_run(const scene::Scene& scene, const MemoryEstimate& estimate, b
 }
 
 std::vector<double> parts_of_planes(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
-    if (!kind_named(scene.solver(), kinds).work_of_planes) return {};
+    if (!kind_named(scene.solver(), kinds).parallel.work_of_planes) return {};
     const auto wet = scene.dim() == 2 ? geometry::liquid_in_planes<2>(scene, 0) : geometry::liquid_in_planes<3>(scene, 0);
     double liquid = 0;
     for (const auto& plane : wet) liquid += plane.wet;

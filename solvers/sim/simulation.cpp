@@ -220,9 +220,9 @@ void Simulation::replace(std::unique_ptr<Solver> solver) {
 /// Empty where the present partition is good enough.
 Cut Simulation::balanced_cut(const Checkpoint& state) const {
     const Cut& present = shares_->cut;
-    if (present.empty() || !kind_.work_of_planes) return {};
+    if (present.empty() || !kind_.parallel.work_of_planes) return {};
     constexpr double worth = 0.9;  // the solver is rebuilt for it, which takes as long as some steps
-    const auto work = kind_.work_of_planes(scene_, &state);
+    const auto work = kind_.parallel.work_of_planes(scene_, &state);
     if (static_cast<int>(work.size()) != present.planes()) return {};  // of another scene, which the solver rejects
     Cut cut = load_balanced_cut(work, present.ranks());
     const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
