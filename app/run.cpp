@@ -14,15 +14,14 @@
 #include "output/atomic_file.hpp"
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
-#include "reconstruction/reconstruction.hpp"
 #include "rigid/remark.hpp"
+#include "sim/frame_options.hpp"
 #include "sim/loop.hpp"
 #include "sim/memory_estimate.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
 #include "sim/run_id.hpp"
 #include "sim/shares.hpp"
-#include "sim/solid_cells.hpp"
 #include "validation/cost/parallel_estimate.hpp"
 #include "validation/harness/generic_metrics.hpp"
 #include "validation/report/command.hpp"
@@ -50,28 +49,11 @@ struct RunArguments {
     bool quiet = false, explain = false, any_size = false;
 };
 
-output::FrameOptions frame_options(const scene::Scene& scene) {
-    output::FrameOptions options;
-    options.fields = scene.root().texts("output.fields");
-    options.faces = scene.flag("output.faces");
-    options.single_precision = scene.text("output.precision") == "single";
-    const std::string& compression = scene.text("output.compression");
-    options.compression = compression == "none"  ? output::Compression::none
-                          : compression == "lz4" ? output::Compression::lz4
-                                                 : output::Compression::zlib;
-    options.solid = sim::solid_cells(scene);
-    if (const std::shared_ptr<reconstruction::Reconstruction> maker = reconstruction::reconstruction_of(scene))
-        options.surface = [maker](const FieldSet& fields, real t) -> const SurfaceMesh& { return maker->make_part(fields, t); };
-    return options;
-}
-
-/// The frames of a run; none, with a word about it, where this build has no VTK.
+/// The frames of a run; none, with a message, where this build cannot write their format.
 std::optional<output::Frames> open_frames(const Simulation& simulation, const std::filesystem::path& folder, bool restarted) {
-    const auto options = frame_options(simulation.scene());
-    if (!output::can_write_frames()) {
-        by_first_rank([] {
-            std::fprintf(stderr, "this weir was built without VTK (WEIR_VTK=OFF): probes and run.json are written, frames are not\n");
-        });
+    const auto options = sim::frame_options(simulation.scene());
+    if (const std::string& reason = sim::frames_unavailable(simulation.scene()); !reason.empty()) {
+        by_first_rank([&] { std::fprintf(stderr, "%s: probes and run.json are written, frames are not\n", reason.c_str()); });
         return std::nullopt;
     }
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1, simulation.time()) : output::Frames(folder, options);
@@ -292,11 +274,10 @@ std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& s
 }
 
 /// What was written, and how to see it.
-void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder) {
+void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder, const scene::Scene& scene) {
     for (const auto& path : series) std::printf("%s\n", path.string().c_str());
-    if (!series.empty())
-        std::printf("view it: weir view %s (a window), weir picture %s (a PNG), or open the .pvd in ParaView\n", folder.c_str(),
-                    folder.c_str());
+    const auto viewers = output::frame_format(scene.text("output.format")).viewers;
+    if (!series.empty() && viewers) std::printf("view it: %s\n", viewers(folder.string()).c_str());
 }
 
 /// A checkpoint at the end of its scene: there is nothing to continue.
@@ -325,7 +306,7 @@ int simulate(const RunArguments& arguments) {
     }
     slabs().hold_whole(std::any_of(arguments.measure.begin(), arguments.measure.end(), validation::looks_at_whole_fields));
     if (!arguments.explain)
-        sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run,
+        sim::require_memory(scene, sim::registry(), sim::frames_unavailable(scene).empty() ? sim::Use::run_with_frames : sim::Use::run,
                             memory_for_all(scene));
     Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
@@ -347,7 +328,7 @@ int simulate(const RunArguments& arguments) {
     checkpoint.reset();  // the next one takes its place, and it its room on the disk
     {
         const auto parts = simulation.solver().distributed_view();
-        output::check(frame_options(simulation.scene()), simulation.fields());
+        output::check(sim::frame_options(simulation.scene()), simulation.fields());
     }
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     const std::unique_ptr<output::FolderLock> lock = lock_folder(folder);
@@ -378,7 +359,7 @@ int simulate(const RunArguments& arguments) {
     }
     if (simulation.steady())
         std::fprintf(stderr, "steady at t = %.6g s: all velocities change more slowly than time.stop_when_steady\n", simulation.time());
-    if (!arguments.quiet) tell_results(recorder.series(), folder);
+    if (!arguments.quiet) tell_results(recorder.series(), folder, simulation.scene());
     const bool finished = ending == sim::Ending::finished;
     if (finished && measured) std::fputs(measured->text().c_str(), stdout);
     if (finished) return exit_success;
@@ -391,7 +372,7 @@ int simulate(const RunArguments& arguments) {
 
 void add_run(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<RunArguments>();
-    CLI::App* run = app.add_subcommand("run", "Simulate a scene: frames (.pvd), probes (.csv) and run.json");
+    CLI::App* run = app.add_subcommand("run", "Simulate a scene: frames, probes (.csv) and run.json");
     run->add_option("scene", arguments->scene, "A scene file, a folder with a scene.toml, or the name of a case (weir list cases)");
     run->add_option("--out", arguments->out, "Output folder (default: out/<name of the scene>)");
     run->add_option("--set", arguments->set, "Override a key: --set grid.cells=[64,64]; may be repeated")

@@ -4,9 +4,10 @@
 #include "app/picture/draw.hpp"
 #include "core/parallel.hpp"
 #include "output/read_frame.hpp"
+#include "sim/frame_options.hpp"
+#include "sim/loop.hpp"
 #include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
-#include "sim/solid_cells.hpp"
 #include "validation/report/command.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <iterator>
 
@@ -52,14 +52,10 @@ StatePtr from_text(const std::string& text, const std::string& name, const Chang
 StepReport step(const StatePtr& state, real t, std::int64_t count) {
     const Change change(state);
     const py::gil_scoped_release release;
-    StepReport report;
-    for (std::int64_t i = 0; i < count && (i == 0 || !state->simulation.reached(t)); ++i) {
-        const auto before = std::chrono::steady_clock::now();
-        report = state->simulation.step_until(t);
-        if (!state->measured) continue;
-        state->measured->on_step(report, std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
-    }
-    return report;
+    return sim::advance(state->simulation, {.until = t, .steps = count, .past_end = true}, [&](const StepReport& report, double seconds) {
+        if (state->measured) state->measured->on_step(report, seconds);
+        return true;
+    });
 }
 
 const char* word(Where where) { return where == Where::cell ? "cell" : where == Where::face ? "face" : "particle"; }
@@ -164,8 +160,8 @@ void restore(const StatePtr& state, const std::filesystem::path& file) {
 /// A frame as `weir run` writes it; the series begins with the first one.
 std::vector<std::filesystem::path> write_frame(const StatePtr& state, const std::filesystem::path& folder) {
     if (!state->frames) {
-        output::FrameOptions options;
-        options.solid = sim::solid_cells(state->simulation.scene());
+        const auto options = sim::frame_options(state->simulation.scene());
+        output::check(options, state->shown());
         state->frames.emplace(folder, options);
     }
     state->frames->write(state->shown(), state->simulation.time());

@@ -240,7 +240,8 @@ class Simulation:
         self._core.restore(os.fspath(file))
 
     def write_frame(self, folder: "str | os.PathLike") -> list:
-        """Adds a frame to the VTK series in a folder, begun anew by the first; the .pvd files."""
+        """Adds a frame in the scene's format, fields, precision and compression (its `output` table) to the series in a folder. The first
+        frame begins new series. Returns their index files (grid.pvd, ...)."""
         return self._core.write_frame(os.fspath(folder))
 
     def picture(self, field: str = "", size: int = 900) -> bytes:

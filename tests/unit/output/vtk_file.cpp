@@ -3,7 +3,7 @@
 
 #include "core/error.hpp"
 #include "core/halo.hpp"
-#include "output/frame_files.hpp"
+#include "output/vtk_frame.hpp"
 #include "reconstruction/reconstruction.hpp"
 #include "sim/registry.hpp"
 #include "sim/solid_cells.hpp"

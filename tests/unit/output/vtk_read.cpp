@@ -2,7 +2,7 @@
 #include "output/vtk_read.hpp"
 
 #include "core/error.hpp"
-#include "output/frame_files.hpp"
+#include "output/vtk_frame.hpp"
 #include "output/vtk_file.hpp"
 #include "sim/registry.hpp"
 #include "sim/simulation.hpp"
