@@ -1,6 +1,7 @@
 #include "validation/stability/limit.hpp"
 
 #include "core/error.hpp"
+#include "sim/loop.hpp"
 #include "sim/simulation.hpp"
 
 #include <fmt/format.h>
@@ -160,15 +161,18 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
         return std::nullopt;
     };
     if (auto at_start = broken()) return at_start;
-    while (!simulation->finished() && simulation->steps() < stress.steps) {
-        try {
-            report = simulation->step();
-        } catch (const NumericalFailure& failure) {
-            return failed(failure, simulation->steps() + 1, simulation->time());
-        }
-        preconditions.step(*simulation, report);
-        if (auto found = broken()) return found;
+    std::optional<Break> found;
+    try {
+        sim::advance(*simulation, {.steps = stress.steps}, [&](const StepReport& last, double) {
+            report = last;
+            preconditions.step(*simulation, report);
+            found = broken();
+            return !found;
+        });
+    } catch (const NumericalFailure& failure) {
+        return failed(failure, simulation->steps() + 1, simulation->time());
     }
+    if (found) return found;
     preconditions.end(*simulation, report);
     if (!stress.cut) check(false);
     if (measured) *measured = preconditions.measured();
