@@ -73,7 +73,7 @@ std::string explain_ranks(const Simulation& simulation) {
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
     text += simulation.solver().holds_own_planes() ? "; distributed storage: each rank stores and computes its own slab"
                                                    : "; replicated storage: each rank stores the whole grids and computes its own slab";
-    if (!shares.replicated_work.empty()) text += "; replicated work: " + shares.replicated_work;
+    if (!shares.replicated_work.empty()) text += "; replicated work: " + scene::text_of(shares.replicated_work);
     return text + "\n";
 }
 
@@ -141,7 +141,7 @@ public:
         told_ = simulation.warnings().size();
         by_first_rank([&] {
             checkpoint > 0 ? log_.steps().resume(simulation.steps()) : log_.steps().begin();
-            write_log("running");  // where the disk fills later, there is a file that can still say so
+            write_log(output::RunStatus::running);  // where the disk fills later, there is a file that can still say so
             probes_.begin(simulation.probes(), earlier.empty() ? earlier : earlier / "probes");
         });
     }
@@ -166,12 +166,12 @@ public:
             probes_.update(simulation.probes());  // those of the start too
             // not more than a few per cent of the time goes into replacing it
             const auto now = clock::now();
-            if (now - written_ > 20 * write_time_) write_log("running");
+            if (now - written_ > 20 * write_time_) write_log(output::RunStatus::running);
         });
         balance_.on_frame(simulation);
         spent_.writing += seconds_since(start);
     }
-    void end(const Simulation& simulation, const std::string& status) {
+    void end(const Simulation& simulation, output::RunStatus status) {
         progress_.end();
         const auto sent = of_ranks(slabs().traffic());  // before what this takes
         const auto states = of_ranks(state_of(simulation, checkpoint_));
@@ -194,9 +194,9 @@ public:
         progress_.end();
         if (slabs().rank() > 0) return;
         try {
-            write_log("failed: " + why);
+            write_log(output::RunStatus::failed, why);
         } catch (const std::exception&) {
-            log_.overwrite_status("failed: " + why);
+            log_.overwrite_status(output::RunStatus::failed, why);
         }
     }
     std::vector<std::filesystem::path> series() const { return frames_ ? frames_->series() : std::vector<std::filesystem::path>{}; }
@@ -207,11 +207,11 @@ private:
     void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankState>& states) {
         if (!slabs().several()) return;
         const sim::Shares& shares = simulation.shares();
-        using Holds = output::RunLog::Holds;
-        const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
-                            : simulation.solver().holds_own_planes()     ? Holds::own_planes
-                                                                         : Holds::whole_grids;
-        log_.set_ranks(slabs().ranks(), shares.cut, holds, shares.replicated_work, sent, states);
+        using Storage = output::RunLog::Storage;
+        const Storage storage = shares.shared == scene::Shared::by_particles ? Storage::particles
+                                : simulation.solver().holds_own_planes()     ? Storage::planes
+                                                                             : Storage::replicated;
+        log_.set_ranks({slabs().ranks(), shares.cut, storage, shares.replicated_work, sent, states});
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.steps().add(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
@@ -222,12 +222,12 @@ private:
             std::fprintf(stderr, "%s\n", simulation.warnings()[told_].c_str());
         }
     }
-    void write_log(const std::string& status) {
+    void write_log(output::RunStatus status, const std::string& failure = {}) {
         const auto start = clock::now();
         std::vector<std::string> names;
         for (const auto& path : series()) names.push_back(path.filename().string());
         log_.set_series(names);
-        log_.set_status(status);
+        log_.set_status(status, failure);
         log_.write();
         written_ = clock::now();
         write_time_ = written_ - start;
@@ -326,10 +326,6 @@ int simulate(const RunArguments& arguments) {
     if (restarted > 0 && simulation.finished()) return tell_finished(simulation);
     const std::string continued = checkpoint ? sim::run_id_of(*checkpoint) : "";
     checkpoint.reset();  // the next one takes its place, and it its room on the disk
-    {
-        const auto parts = simulation.solver().distributed_view();
-        output::check(sim::frame_options(simulation.scene()), simulation.fields());
-    }
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     const std::unique_ptr<output::FolderLock> lock = lock_folder(folder);
     const std::string space = check_space(simulation, folder, arguments.any_size);
@@ -351,8 +347,7 @@ int simulate(const RunArguments& arguments) {
     sim::Ending ending;
     try {
         ending = sim::run(simulation, recorder, options);
-        recorder.end(simulation,
-                     ending == sim::Ending::finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
+        recorder.end(simulation, ending == sim::Ending::finished ? output::RunStatus::finished : output::RunStatus::interrupted);
     } catch (const std::exception& failure) {
         recorder.fail(failure.what());
         throw;

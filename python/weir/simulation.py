@@ -12,9 +12,8 @@ from . import _weir, scene as _scene
 from ._weir import StepReport
 from .fields import Edit, Field
 
-_reported = ("dt", "cfl", "max_divergence", "iterations", "residual_before", "residual_after", "residual_max", "density_error",
-             "max_density_error", "viscous_iterations")
-_report_dtype = np.dtype([("step", np.int64), ("time", float)] + [(name, np.int64 if name.endswith("iterations") else float) for name in _reported])
+_reported = tuple(name for name, is_count in _weir.step_quantities)
+_report_dtype = np.dtype([("step", np.int64), ("time", float)] + [(name, np.int64 if is_count else float) for name, is_count in _weir.step_quantities])
 
 
 @dataclass(frozen=True)

@@ -100,7 +100,7 @@ scene::SolverKind kind() {
         check_parallel,
         scene::Shared::by_planes,
         [](const scene::Scene&, const Cut&) {
-            return "the levels of the pressure of fewer than 20,000 unknowns, extrapolation of the level set into solids";
+            return scene::ReplicatedWorks{scene::ReplicatedWork::small_pressure_levels, scene::ReplicatedWork::level_set_in_solids};
         }};
     tall.holds_own_part = holds_own_planes;
     tall.sends = traffic_of_step;

@@ -103,7 +103,9 @@ scene::SolverKind kind() {
     water.work_of_planes = work_of_planes;
     water.sends = traffic_of_step;
     water.replicated_work = [](const scene::Scene& scene, const Cut& cut) {
-        return staggered::replicated_pressure(scene, cut) + ", extrapolation of the level set into solids";
+        auto works = staggered::replicated_pressure(scene, cut);
+        works.push_back(scene::ReplicatedWork::level_set_in_solids);
+        return works;
     };
     return water;
 }

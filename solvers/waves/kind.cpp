@@ -230,7 +230,9 @@ scene::SolverKind kind() {
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
             check_parallel,
             scene::Shared::by_planes,
-            [](const scene::Scene& scene, const Cut&) { return std::string(scene.dim() == 2 ? "the surface's one row" : ""); },
+            [](const scene::Scene& scene, const Cut&) {
+                return scene.dim() == 2 ? scene::ReplicatedWorks{scene::ReplicatedWork::surface_row} : scene::ReplicatedWorks{};
+            },
             holds_own_planes,
             traffic_of_step,
             [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }};

@@ -117,8 +117,7 @@ void RunWatch::on_step(const StepReport& report, double seconds) {
 
 RunRecord& RunWatch::record() {
     record_.fields = simulation_->fields();
-    record_.probes.clear();
-    for (const auto& p : simulation_->probes()) record_.probes.push_back({p.name, p.kind, p.columns, p.positions, p.times, p.values});
+    record_.probes = simulation_->probes();
     record_.passes = simulation_->solver().passes().list();
     return record_;
 }

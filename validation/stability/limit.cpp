@@ -1,6 +1,7 @@
 #include "validation/stability/limit.hpp"
 
 #include "core/error.hpp"
+#include "core/step_quantities.hpp"
 #include "sim/loop.hpp"
 #include "sim/simulation.hpp"
 
@@ -17,9 +18,7 @@ namespace {
 constexpr int values_of_axis = 6;  // from the low end of an axis to its high end
 
 /// Returns whether a quantity has no value before the first step.
-bool needs_step(const std::string& series) {
-    return series == "divergence" || series == "density_error" || series == "dt" || series == "cfl" || series == "fastest";
-}
+bool needs_step(const std::string& series) { return find_step_quantity(series) || series == "fastest"; }
 
 /// Watches one invariant from step to step.
 class Watch {
