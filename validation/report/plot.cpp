@@ -20,6 +20,7 @@ constexpr int symbols[] = {7, 5, 9, 13};  // disk, square, triangle, diamond: fo
 constexpr double panel_width = 560, left_margin = 84, right_margin = 22, plot_height = 300;  // pixels
 constexpr double below_axis = 66;                                                            // of ticks and the axis title
 constexpr double legend_font = 11, legend_row = 17, line_height = 17, swatch = 24, margin = 14;
+constexpr std::size_t title_letters = 68;                                                            // per line
 constexpr const char *shade_colour = "#5b6673", *shade_fill = "fs transparent solid 0.12 noborder";  // on light and on dark paper
 
 /// A point can be drawn: finite, and positive where an axis is logarithmic.
@@ -69,9 +70,10 @@ struct Range {
         if (!(low <= high)) low = high = log ? 1 : 0;
         if (log && low == high)
             low /= 10, high *= 10;
-        else if (log)
-            low /= 1.3, high *= 1.3;
-        else if (const real room = low == high ? std::max(1e-12, std::abs(low)) : 0.05 * (high - low); true)
+        else if (log) {
+            const real room = std::max(1.3, std::pow(high / low, 0.05));
+            low /= room, high *= room;
+        } else if (const real room = low == high ? std::max(1e-12, std::abs(low)) : 0.05 * (high - low); true)
             low -= room, high += room;
     }
     /// 0 at the low end, 1 at the high end.
@@ -85,7 +87,9 @@ std::string axis(const char* name, const Range& r) {
     s += fmt::format("set logscale {}\n", name);
     if (r.high / r.low > 170) return s + fmt::format("set format {} '10^{{%T}}'\n", name);
     // Less than two decades: ticks at some digits of each, or the axis would have one label or none.
-    const std::vector<real> digits = r.high / r.low < 13 ? std::vector<real>{1, 1.5, 2, 3, 4, 5, 7} : std::vector<real>{1, 2, 5};
+    const std::vector<real> digits = r.high / r.low < 4    ? std::vector<real>{1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9}
+                                     : r.high / r.low < 13 ? std::vector<real>{1, 1.5, 2, 3, 4, 5, 7}
+                                                           : std::vector<real>{1, 2, 5};
     s += fmt::format("set {}tics (", name);
     const char* comma = "";
     for (real decade = std::pow(10.0, std::floor(std::log10(r.low))); decade <= r.high; decade *= 10)
@@ -113,7 +117,7 @@ Style style_of(const Curve& c, std::size_t number) {
     const auto round = number / std::size(colours);
     if (c.points) return {.symbol = fmt::format("pt {} ps 0.8", 4 + 2 * (number % 6)), .colour = colour};
     if (c.dashed) return {.line = "lw 1.5 dt 2", .colour = "#777777"};
-    const std::string line = fmt::format("lw {} dt {}", round == 0 ? 2 : 1, round == 0 ? 1 : 2 + round % 4);
+    const std::string line = round == 0 ? "lw 2 dt 1" : fmt::format("lw 1.5 dt ({},3)", 4 + 4 * (round % 3));
     if (c.size() > 12) return {.line = line, .colour = colour};
     return {.line = line, .symbol = fmt::format("pt {} ps 0.6", symbols[round % std::size(symbols)]), .colour = colour};
 }
@@ -124,7 +128,7 @@ public:
     explicit Drawing(const Panel& panel)
         : panel_(panel),
           curves_(drawn_curves(panel)),
-          title_(lines_of(panel.title, static_cast<std::size_t>(panel_width / letter_width(13)))),
+          title_(lines_of(panel.title, title_letters)),
           x_{.log = panel.x.log},
           y_{.log = panel.y.log} {
         for (const Curve& c : curves_)
