@@ -144,7 +144,7 @@ Map drawing_of_map(const json& m) {
         map.cells.emplace_back();
         for (const json& c : column) {
             if (c.value("stable", true)) {
-                map.cells.back().push_back({.text = "held"});
+                map.cells.back().push_back({.text = "stable"});
                 continue;
             }
             const std::string kind = text_at(c, "kind");
