@@ -96,9 +96,9 @@ std::string output_fields_text() {
 
 std::string output_fields_markdown() {
     std::string text =
-        "# What solvers show\n\n`weir list fields --markdown` writes this page from scenes that it builds, in 3D.\n\n"
-        "Fields go to frames (`output.fields`) and to probes, integrals to probes of kind `integral` and to the metrics of cases. What a "
-        "scene must say for a name to be there stands beside it; `emitters.smoke` and `initial.smoke` bring smoke as well.\n";
+        "# Fields and integrals of solvers\n\n`weir list fields --markdown` writes this page from scenes that it builds, in 3D.\n\nFields "
+        "are written to frames (`output.fields`) and to probes, integrals to probes of kind `integral` and to the metrics of cases. The "
+        "last column gives the key that a scene requires for a name to exist; `emitters.smoke` and `initial.smoke` also create smoke.\n";
     for (const scene::SolverKind& kind : sim::registry()) {
         text +=
             fmt::format("\n## `{}`\n{}\n\n| name | unit | where | required key |\n|---|---|---|---|\n", kind.schema.name, kind.schema.doc);

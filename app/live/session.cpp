@@ -96,7 +96,7 @@ std::string Session::text(const std::vector<Change>& more) const {
     for (const auto& change : all)
         changes += fmt::format("    {{ time = {}, key = \"{}\", value = {} }},\n", scene::number_text(change.time), change.what.key,
                                change.what.value);
-    return "# What was done by hand, as a scene: `weir run` of it repeats it bit for bit.\n" + scene::to_scene_text(root) +
+    return "# A recorded session of interactive forcing, as a scene: `weir run` repeats it bit for bit.\n" + scene::to_scene_text(root) +
            (changes.empty() ? "" : "changes = [\n" + changes + "]\n");
 }
 

@@ -1,6 +1,6 @@
 #include "flow/body_friction.hpp"
 
-#include "core/error.hpp"
+#include "linear/conjugate_gradients.hpp"
 
 namespace weir::flow {
 
@@ -32,17 +32,6 @@ template <int D>
 void BodyFriction<D>::size(Vector& v, const MacState<D>& s) const {
     for (int a = 0; a < D; ++a) v.fluid[static_cast<std::size_t>(a)] = Grid<real, D>(s.u[a].extent());
     v.bodies.resize(s.no_slip_walls->bodies.size());
-}
-
-/// Inner product: the fluid's part, then the bodies', in fixed order.
-template <int D>
-real BodyFriction<D>::dot(const Vector& x, const Vector& y) const {
-    real sum = 0;
-    for (std::size_t a = 0; a < D; ++a)
-        sum += sum_over(x.fluid[a].extent(), [&](const Index<D>& I) { return x.fluid[a](I) * y.fluid[a](I); });
-    for (std::size_t b = 0; b < x.bodies.size(); ++b)
-        for (std::size_t k = 0; k < n; ++k) sum += x.bodies[b][k] * y.bodies[b][k];
-    return sum;
 }
 
 /// ∇²q of the grid neighbours, without links across walls: their terms are added where the wall velocity is known.
@@ -103,7 +92,7 @@ void BodyFriction<D>::set_right_side(const MacState<D>& s, real dt) {
 
 /// image = A direction
 template <int D>
-void BodyFriction<D>::multiply(const MacState<D>& s, real dt) {
+void BodyFriction<D>::set_image(const MacState<D>& s, real dt) {
     const real mass = s.rho * s.u.cell_volume();
     for (int c = 0; c < D; ++c) {
         const auto at = static_cast<std::size_t>(c);
@@ -128,6 +117,18 @@ void BodyFriction<D>::multiply(const MacState<D>& s, real dt) {
             if (s.no_slip_walls->bodies[b].held[k] || !s.no_slip_walls->bodies[b].coupled) image_.bodies[b][k] = direction_bodies_[b][k];
 }
 
+/// Inner product: the fluid's part, then the bodies', in fixed order.
+template <int D>
+template <class Faces>
+real BodyFriction<D>::dot(const std::array<Faces, D>& fluid, const std::vector<rigid::Twist<D>>& bodies, const Vector& y) const {
+    real sum = 0;
+    for (std::size_t a = 0; a < D; ++a)
+        sum += sum_over(y.fluid[a].extent(), [&](const Index<D>& I) { return y.fluid[a](I) * fluid[a](I); });
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (std::size_t k = 0; k < n; ++k) sum += y.bodies[b][k] * bodies[b][k];
+    return sum;
+}
+
 template <int D>
 void BodyFriction<D>::set_diagonal(const MacState<D>& s, real dt) {
     const real mass = s.rho * s.u.cell_volume();
@@ -146,70 +147,63 @@ void BodyFriction<D>::set_diagonal(const MacState<D>& s, real dt) {
     }
 }
 
-/// z = residual/diagonal, stored in the image; returns residual · z.
+/// M = 1/diagonal (Jacobi): walls very close to nodes give entries a hundred times larger.
 template <int D>
-real BodyFriction<D>::precondition() {
-    for (std::size_t c = 0; c < D; ++c)
-        for_each_cell(image_.fluid[c].extent(),
-                      [&](const Index<D>& I) { image_.fluid[c](I) = residual_.fluid[c](I) / diagonal_.fluid[c](I); });
-    for (std::size_t b = 0; b < image_.bodies.size(); ++b)
-        for (std::size_t k = 0; k < n; ++k) image_.bodies[b][k] = residual_.bodies[b][k] / diagonal_.bodies[b][k];
-    return dot(residual_, image_);
-}
+struct BodyFriction<D>::System {
+    static constexpr linear::Norm norm = linear::Norm::natural;
+    BodyFriction& of;
+    const MacState<D>& s;
+    real dt;
 
-/// direction = z + β direction; the first direction is z.
-template <int D>
-void BodyFriction<D>::update_direction(real beta) {
-    for (std::size_t c = 0; c < D; ++c) {
-        auto& d = direction_.face[c];
-        for_each_in(nodes_[c].lo, nodes_[c].hi, [&](const Index<D>& I) { d(I) = image_.fluid[c](I) + (beta == 0 ? 0 : beta * d(I)); });
-        fill_ghosts(d, homogeneous_[c], 1);
+    /// z is stored in the image.
+    real precondition() {
+        auto& z = of.image_;
+        for (std::size_t c = 0; c < D; ++c)
+            for_each_cell(z.fluid[c].extent(),
+                          [&](const Index<D>& I) { z.fluid[c](I) = of.residual_.fluid[c](I) / of.diagonal_.fluid[c](I); });
+        for (std::size_t b = 0; b < z.bodies.size(); ++b)
+            for (std::size_t k = 0; k < n; ++k) z.bodies[b][k] = of.residual_.bodies[b][k] / of.diagonal_.bodies[b][k];
+        return of.dot(of.residual_.fluid, of.residual_.bodies, z);
     }
-    for (std::size_t b = 0; b < direction_bodies_.size(); ++b)
-        for (std::size_t k = 0; k < n; ++k)
-            direction_bodies_[b][k] = image_.bodies[b][k] + (beta == 0 ? 0 : beta * direction_bodies_[b][k]);
-}
-
-/// Updates solution and residual with the optimal step along the direction.
-template <int D>
-void BodyFriction<D>::walk(real rz) {
-    real met = 0;
-    for (std::size_t c = 0; c < D; ++c)
-        met += sum_over(image_.fluid[c].extent(), [&](const Index<D>& I) { return image_.fluid[c](I) * direction_.face[c](I); });
-    for (std::size_t b = 0; b < direction_bodies_.size(); ++b)
-        for (std::size_t k = 0; k < n; ++k) met += image_.bodies[b][k] * direction_bodies_[b][k];
-    const real alpha = rz / met;
-    for (std::size_t c = 0; c < D; ++c)
-        for_each_in(nodes_[c].lo, nodes_[c].hi, [&](const Index<D>& I) {
-            solution_.fluid[c](I) += alpha * direction_.face[c](I);
-            residual_.fluid[c](I) -= alpha * image_.fluid[c](I);
-        });
-    for (std::size_t b = 0; b < direction_bodies_.size(); ++b)
-        for (std::size_t k = 0; k < n; ++k) {
-            solution_.bodies[b][k] += alpha * direction_bodies_[b][k];
-            residual_.bodies[b][k] -= alpha * image_.bodies[b][k];
+    void update_direction(real beta) {
+        const auto& z = of.image_;
+        for (std::size_t c = 0; c < D; ++c) {
+            auto& d = of.direction_.face[c];
+            for_each_in(of.nodes_[c].lo, of.nodes_[c].hi, [&](const Index<D>& I) { d(I) = z.fluid[c](I) + (beta == 0 ? 0 : beta * d(I)); });
+            fill_ghosts(d, of.homogeneous_[c], 1);
         }
-}
+        auto& d = of.direction_bodies_;
+        for (std::size_t b = 0; b < d.size(); ++b)
+            for (std::size_t k = 0; k < n; ++k) d[b][k] = z.bodies[b][k] + (beta == 0 ? 0 : beta * d[b][k]);
+    }
+    real multiply() {
+        of.set_image(s, dt);
+        return of.dot(of.direction_.face, of.direction_bodies_, of.image_);
+    }
+    void advance(real alpha) {
+        for (std::size_t c = 0; c < D; ++c)
+            for_each_in(of.nodes_[c].lo, of.nodes_[c].hi, [&](const Index<D>& I) {
+                of.solution_.fluid[c](I) += alpha * of.direction_.face[c](I);
+                of.residual_.fluid[c](I) -= alpha * of.image_.fluid[c](I);
+            });
+        for (std::size_t b = 0; b < of.direction_bodies_.size(); ++b)
+            for (std::size_t k = 0; k < n; ++k) {
+                of.solution_.bodies[b][k] += alpha * of.direction_bodies_[b][k];
+                of.residual_.bodies[b][k] -= alpha * of.image_.bodies[b][k];
+            }
+    }
+};
 
-/// Conjugate gradients with Jacobi preconditioning: walls very close to nodes give entries a hundred times larger.
 template <int D>
 void BodyFriction<D>::solve(MacState<D>& s, real dt) {
     set_right_side(s, dt);
     set_diagonal(s, dt);
     for (auto& q : solution_.fluid) q.fill(0);
     for (auto& q : solution_.bodies) q = {};
-    real rz = precondition();
-    const real goal = tolerance * tolerance * rz;
-    if (rz > 0) update_direction(0);
-    for (iterations_ = 0; rz > goal; ++iterations_) {
-        if (iterations_ == max_iterations || !std::isfinite(rz))
-            throw NumericalFailure("velocity", "the implicit solve for velocity and bodies did not converge");
-        multiply(s, dt);
-        walk(rz);
-        const real last = rz;
-        rz = precondition();
-        update_direction(rz / last);
-    }
+    System system{*this, s, dt};
+    iterations_ = 0;
+    linear::StopTest stop(tolerance, max_iterations, iterations_);
+    linear::require_converged("velocity", "viscous solve with bodies", linear::conjugate_gradients(system, stop), stop);
     finish(s, dt);
 }
 

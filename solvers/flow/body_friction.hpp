@@ -33,13 +33,12 @@ private:
     void size(Vector& v, const MacState<D>& s) const;
     void laplacian_of(const Padded<D>& q, const MacState<D>& s, int a, Grid<real, D>& out) const;
     void set_right_side(const MacState<D>& s, real dt);
+    void set_image(const MacState<D>& s, real dt);
     void set_diagonal(const MacState<D>& s, real dt);
-    void multiply(const MacState<D>& s, real dt);
-    real precondition();
-    void update_direction(real beta);
-    void walk(real rz);
+    struct System;
     void finish(MacState<D>& s, real dt);
-    real dot(const Vector& x, const Vector& y) const;
+    template <class Faces>
+    real dot(const std::array<Faces, D>& fluid, const std::vector<rigid::Twist<D>>& bodies, const Vector& y) const;
 
     std::vector<Nodes<D>> nodes_;
     std::array<Boundary<D>, D> homogeneous_;

@@ -1,6 +1,6 @@
 #include "flow/helmholtz.hpp"
 
-#include "core/error.hpp"
+#include "linear/conjugate_gradients.hpp"
 
 namespace weir::flow {
 
@@ -47,14 +47,9 @@ template <int D>
 Helmholtz<D>::Helmholtz(const Nodes<D>& nodes, const Vec<D>& h, const Boundary<D>& boundary, OpenFaces<D> open, const Index<D>& extent)
     : nodes_(nodes), h_(h), boundary_(boundary.homogeneous()), open_(open), direction_(extent), image_(extent), solution_(extent) {}
 
-template <int D>
-real Helmholtz<D>::dot(const Grid<real, D>& x, const Grid<real, D>& y) const {
-    return sum_over(x.extent(), [&](const Index<D>& I) { return x(I) * y(I); });
-}
-
 /// The first direction is the residual, scaled: it is for δ, r for δ/scale.
 template <int D>
-void Helmholtz<D>::begin(const Grid<real, D>& r, const WallRows<D>& walls) {
+void Helmholtz<D>::set_first_direction(const Grid<real, D>& r, const WallRows<D>& walls) {
     fill_planes(direction_, r, boundary_);
     if (!walls.empty()) {
         walls.each([&](const Index<D>& I, real, real scale) { direction_(I) *= scale; });
@@ -63,39 +58,58 @@ void Helmholtz<D>::begin(const Grid<real, D>& r, const WallRows<D>& walls) {
     fill_end_planes(direction_, boundary_);  // on all ranks, including those without walls
 }
 
+/// The solve is for δ/scale, with M = 1.
+template <int D>
+struct Helmholtz<D>::System {
+    static constexpr linear::Norm norm = linear::Norm::natural;
+    Helmholtz& of;
+    Grid<real, D>& r;
+    real a;
+    const Mask<D>& mask;
+    std::span<const Held> held;
+    const WallRows<D>& walls;
+
+    real precondition() {
+        return sum_over(r.extent(), [&](const Index<D>& I) { return r(I) * r(I); });
+    }
+    void update_direction(real beta) {
+        if (beta == 0) return of.set_first_direction(r, walls);
+        auto& p = of.direction_;
+        for_each_in(of.nodes_.lo, of.nodes_.hi, [&](const Index<D>& I) { p(I) = r(I) + beta * p(I); });
+        walls.each([&](const Index<D>& I, real, real scale) { p(I) += (scale - 1) * r(I); });
+        fill_ghosts(p, of.boundary_, 1);
+    }
+    real multiply() {
+        const auto& p = of.direction_;
+        auto& Ap = of.image_;
+        laplacian(p, of.h_, of.nodes_, mask, of.open_, Ap);  // Ap stays 0 outside the nodes
+        for_each_in(of.nodes_.lo, of.nodes_.hi, [&](const Index<D>& I) { Ap(I) = p(I) - a * Ap(I); });
+        for (const Held& h : held) Ap[h.cell] = 0;
+        walls.each([&](const Index<D>& I, real extra, real) { Ap(I) -= a * extra * p(I); });
+        return sum_over(Ap.extent(), [&](const Index<D>& I) { return Ap(I) * p(I); });
+    }
+    void advance(real alpha) {
+        auto& Ap = of.image_;
+        walls.each([&](const Index<D>& I, real, real scale) { Ap(I) *= scale; });
+        for_each_in(of.nodes_.lo, of.nodes_.hi, [&](const Index<D>& I) {
+            of.solution_(I) += alpha * of.direction_(I);
+            r(I) -= alpha * Ap(I);
+        });
+    }
+};
+
 template <int D>
 int Helmholtz<D>::solve(Grid<real, D>& r, real a, const Mask<D>& mask, std::span<const Held> held, const char* what,
                         const WallRows<D>& walls) {
     solution_.fill(0);
     for (const Held& h : held) r[h.cell] = 0;
     walls.each([&](const Index<D>& I, real, real scale) { r(I) *= scale; });
-    real rr = dot(r, r);
-    const real goal = tolerance * tolerance * rr;
-    begin(r, walls);
-    int iteration = 0;
-    for (; rr > goal; ++iteration) {
-        if (iteration == max_iterations || !std::isfinite(rr))
-            throw NumericalFailure(what, "the implicit solve for " + std::string(what) + " did not converge");
-        laplacian(direction_, h_, nodes_, mask, open_, image_);  // image_ stays 0 outside the nodes
-        for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) { image_(I) = direction_(I) - a * image_(I); });
-        for (const Held& h : held) image_[h.cell] = 0;
-        walls.each([&](const Index<D>& I, real extra, real) { image_(I) -= a * extra * direction_(I); });
-        const real pAp = sum_over(image_.extent(), [&](const Index<D>& I) { return image_(I) * direction_(I); });
-        const real alpha = rr / pAp;
-        walls.each([&](const Index<D>& I, real, real scale) { image_(I) *= scale; });
-        for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) {
-            solution_(I) += alpha * direction_(I);
-            r(I) -= alpha * image_(I);
-        });
-        const real last = rr;
-        rr = dot(r, r);
-        const real beta = rr / last;
-        for_each_in(nodes_.lo, nodes_.hi, [&](const Index<D>& I) { direction_(I) = r(I) + beta * direction_(I); });
-        walls.each([&](const Index<D>& I, real, real scale) { direction_(I) += (scale - 1) * r(I); });
-        fill_ghosts(direction_, boundary_, 1);
-    }
+    System system{*this, r, a, mask, held, walls};
+    int iterations = 0;
+    linear::StopTest stop(tolerance, max_iterations, iterations);
+    linear::require_converged(what, "diffusion solve", linear::conjugate_gradients(system, stop), stop);
     r.swap(solution_);
-    return iteration;
+    return iterations;
 }
 
 template void laplacian(const Padded<2>&, const Vec<2>&, const Nodes<2>&, const Mask<2>&, OpenFaces<2>, Grid<real, 2>&);

@@ -57,8 +57,8 @@ public:
     std::size_t bytes() const { return direction_.bytes() + image_.bytes() + solution_.bytes(); }
 
 private:
-    void begin(const Grid<real, D>& r, const WallRows<D>& walls);
-    real dot(const Grid<real, D>& x, const Grid<real, D>& y) const;
+    struct System;
+    void set_first_direction(const Grid<real, D>& r, const WallRows<D>& walls);
     Nodes<D> nodes_;
     Vec<D> h_;
     Boundary<D> boundary_;

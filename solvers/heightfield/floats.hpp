@@ -112,6 +112,7 @@ private:
     void set_stiffness(Stiffness& k);
     void see_neighbours(const Field& surface, const Stiffness& k);
     void set_up(real dt);
+    struct System;
     void solve(real dt);
     void multiply(const std::vector<real>& x, std::vector<real>& y, real dt) const;
     real height_of(std::size_t body) const;

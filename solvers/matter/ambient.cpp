@@ -64,7 +64,7 @@ Ambient::Ambient(const scene::Scene& scene) {
     for (std::size_t i = 1; i < frames.size(); ++i)
         if (!(frames[i].number("t") > frames[i - 1].number("t"))) {
             const std::string path = "heat.ambient.keyframes[" + std::to_string(i) + "].t";
-            scene.refuse(path, path + " is " + scene::number_text(frames[i].number("t")) + " s, not after " +
+            scene.refuse(path, path + " is " + scene::number_text(frames[i].number("t")) + " s; it must be after " +
                                    scene::number_text(frames[i - 1].number("t")) + " s of the previous keyframe");
         }
     const auto take = [&](std::vector<Frame>& list, const char* what) {

@@ -1,6 +1,7 @@
-// SIMD lanes of floats for one instruction set, selected by the macro WEIR_ISA (512: AVX-512, 256: AVX2 and FMA, 128: SSE2). This text is
-// compiled once for each, so everything here is internal to the including file and uses no inline function of std: one compiled for a newer
-// processor could otherwise be linked into the path of an older one.
+// SIMD lanes of floats for one instruction set, selected by the macro WEIR_ISA (512: AVX-512, 256: AVX2 and FMA, 128: SSE2). It is apart from
+// core/simd.hpp because this text is compiled three times with the flags of three processors: everything here is internal to the including
+// file and uses no inline function of std or of another header. One compiled for a newer processor could otherwise be linked into the path
+// of an older one. Its width is that of the registers, while core/simd.hpp has the same width for all.
 #pragma once
 #include <immintrin.h>
 #include <cstdint>

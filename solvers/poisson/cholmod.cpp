@@ -19,13 +19,12 @@ private:
         correction_.assign(x_.size(), 0);
         cholesky_.factor(system_.A, system_.components);
     }
-    void iterate(Progress& progress) override {
-        residual(system_.A, x_, b_, r_);
+    void iterate(linear::StopTest& stop, real) override {
         cholesky_.solve(r_, correction_);
         for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += correction_[i];
         system_.components.remove_means(x_);
         residual(system_.A, x_, b_, r_);
-        progress.count(std::sqrt(dot(r_, r_)) / b_norm_);
+        stop.count(std::sqrt(dot(r_, r_)) / b_norm_);
     }
     std::size_t own_bytes() const override { return cholesky_.bytes() + correction_.capacity() * sizeof(real); }
 

@@ -209,7 +209,7 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
 template <int D>
 bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report,
                              const Start& start) {
-    Progress progress(options, report);
+    linear::StopTest stop = stop_test(options, report);
     const real factor = hierarchy_.finest().by_count ? replace_counted : replace_weighted;
     const auto replaced_norm = [&](bool begin_cycle, auto&& before) {
         if (!added_.empty()) added_.set_rhs();
@@ -217,7 +217,7 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
     };
     real norm = start.norm, replaced = norm, gamma = 0, alpha = 0, reduction = usual_reduction;
     bool begun = start.begun;
-    while (progress.wants_more(norm)) {
+    while (stop.wants_more(norm)) {
         if (!begun) restart_cycle();
         finish_cycle();
         if (!added_.empty()) delta_ += added_.energy(hierarchy_.finest().u);
@@ -231,7 +231,7 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
             break;
         }
         const real expected = norm * reduction, before = norm;
-        const bool ends = progress.would_end(expected), replaces = ends || expected <= factor * replaced;
+        const bool ends = stop.would_end(expected), replaces = ends || expected <= factor * replaced;
         begun = !ends;
         if (!added_.empty()) added_.update_direction(beta);
         if (replaces) {
@@ -243,9 +243,9 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
             norm = std::sqrt(iterate_down(alpha, beta)) / start.b_norm;
         }
         reduction = norm / before;
-        progress.count(norm);
+        stop.count(norm);
         const bool gives_up = !options.fixed_iterations && is_slow(report, norm, options.tolerance);
-        if (!replaces && (gives_up || norm <= factor * replaced || !progress.wants_more(norm))) {
+        if (!replaces && (gives_up || norm <= factor * replaced || !stop.wants_more(norm))) {
             see_answer();
             norm = replaced = replaced_norm(false, [](int) {});
             begun = false;

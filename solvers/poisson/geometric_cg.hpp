@@ -4,6 +4,10 @@
 //     up:    prolongation and post-smoothing: u = M r;  γ = r·u;  δ = u·A u
 //     then   β = γ/γ',  α = γ / (δ − β γ/α')
 //
+// These iterations are apart from linear::conjugate_gradients, whose operations are separate sweeps: here one wavefront over planes
+// (wavefront.hpp) does the updates, A p and the first half of the cycle, so that arrays pass through memory twice per iteration. In
+// addition the expected reduction decides before a sweep whether it replaces r. The stop test is the same (linear::StopTest).
+//
 // p, r and the cycle are single precision; x and A p are double. r is replaced by the true b − A x each time it has fallen by a fixed
 // factor, and at the end. Where the estimated reduction shows that this is due, the downward sweep computes b − A x itself instead of r − α
 // s.

@@ -2,16 +2,19 @@
 // parity s is cell i = 2m + s in the red array and i = 2m + 1 − s in the black one. The x-neighbours of entry m are then entries m and m ±
 // 1 of the other colour's row, all other neighbours are entry m, and every loop is contiguous. Entries outside fluid are zero.
 #pragma once
+#include "core/simd.hpp"
 #include "core/slabs.hpp"
 #include "poisson/arena.hpp"
 #include "poisson/poisson.hpp"
-#include "poisson/simd.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 namespace weir::poisson {
+
+using namespace simd;
+inline constexpr int lanes = width<f16>;  // entries of a vector
 
 /// A range of entries of a row, in multiples of 16, that contains all fluid of both colours.
 struct Span {

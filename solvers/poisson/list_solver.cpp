@@ -2,17 +2,12 @@
 
 #include "core/error.hpp"
 
-#include <cstdio>
-
 namespace weir::poisson {
 
 void judge(const Options& options, Report& report) {
     report.converged = report.residual_after <= options.tolerance;
     if (std::isfinite(report.residual_after) && (report.converged || options.fixed_iterations)) return;
-    char text[160];
-    std::snprintf(text, sizeof text, "pressure solve: relative residual %.3g after %d iterations, tolerance %.3g", report.residual_after,
-                  report.iterations, options.tolerance);
-    throw NumericalFailure("pressure", text);
+    linear::fail("pressure", "pressure solve", {report.residual_after, false}, report.iterations, options.tolerance);
 }
 
 void check_extents(bool same, const char* what) {
@@ -55,10 +50,10 @@ const Report& ListSolver<D>::continue_solve(const Report& attempt, Grid<real, D>
     report_.history = attempt.history;
     report_.residual_before = report_.residual_after = true_residual();
     if (attempt.iterations > 0) report_.residual_before = attempt.residual_before;
-    Progress progress(options_, report_);
-    while (b_norm_ > 0 && progress.wants_more(report_.residual_after)) {
+    linear::StopTest stop = stop_test(options_, report_);
+    while (b_norm_ > 0 && stop.wants_more(report_.residual_after)) {
         const int before = report_.iterations;
-        iterate(progress);
+        iterate(stop, report_.residual_after);
         report_.residual_after = true_residual();
         if (report_.iterations == before) break;  // no further gain
     }

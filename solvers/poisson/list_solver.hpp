@@ -1,37 +1,17 @@
 // Shared by all methods on numbered cells: gathering, the compatible right-hand side, the true residual, and the check of the tolerance.
 #pragma once
+#include "linear/stop_test.hpp"
 #include "poisson/system.hpp"
 
 #include <chrono>
 
 namespace weir::poisson {
 
-/// Counts iterations against the options and records the history. One per solve.
-class Progress {
-public:
-    Progress(const Options& options, Report& report) : options_(options), report_(report) {}
-    /// Returns whether another iteration is required, given the relative residual of the iteration.
-    bool wants_more(real relative_residual) const {
-        if (report_.iterations >= options_.max_iterations || !std::isfinite(relative_residual)) return false;
-        return relative_residual > (options_.fixed_iterations ? nothing_left : options_.tolerance);
-    }
-    /// Returns whether an iteration that reaches this residual would be the last.
-    bool would_end(real relative_residual) const {
-        return report_.iterations + 1 >= options_.max_iterations ||
-               relative_residual <= (options_.fixed_iterations ? nothing_left : options_.tolerance);
-    }
-    void count(real relative_residual) {
-        ++report_.iterations;
-        if (options_.record_history) report_.history.push_back(relative_residual);
-    }
-
-private:
-    /// A smaller recursive residual no longer changes the solution; below it is a ratio of round-off errors.
-    static constexpr real nothing_left = 1e-20;
-
-    const Options& options_;
-    Report& report_;
-};
+/// The stop test of a solve; it counts in the report. With fixed_iterations only round-off ends it earlier.
+inline linear::StopTest stop_test(const Options& options, Report& report) {
+    return {options.fixed_iterations ? linear::round_off : options.tolerance, options.max_iterations, report.iterations,
+            options.record_history ? &report.history : nullptr};
+}
 
 /// Measures seconds since its construction.
 class Stopwatch {
@@ -60,8 +40,9 @@ public:
 protected:
     /// Called by setup() when system_ is ready.
     virtual void prepare() = 0;
-    /// Improves x_ towards A x = b_ until progress is satisfied or no further gain is possible; b_ is compatible and not zero.
-    virtual void iterate(Progress& progress) = 0;
+    /// Improves x_ towards A x = b_ until the stop test ends it or no further gain is possible; b_ is compatible and not zero. On entry
+    /// r_ = b_ − A x_, and `relative` is its norm.
+    virtual void iterate(linear::StopTest& stop, real relative) = 0;
     virtual std::size_t own_bytes() const { return 0; }
 
     Options options_;

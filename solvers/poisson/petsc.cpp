@@ -39,11 +39,11 @@ private:
     void prepare() override {
         guarded([&] { engine_->prepare(system_.A, system_.components); });
     }
-    void iterate(Progress& progress) override {
+    void iterate(linear::StopTest& stop, real) override {
         guarded([&] {
             engine_->solve(x_, b_, [&](real residual) {
-                progress.count(residual / b_norm_);
-                return progress.wants_more(residual / b_norm_);
+                stop.count(residual / b_norm_);
+                return stop.wants_more(residual / b_norm_);
             });
         });
         const int rows = system_.A.size();

@@ -29,14 +29,13 @@ private:
         for (auto& list : of_colour_) list.clear();
         for (std::size_t i = 0; i < system_.colour.size(); ++i) of_colour_[system_.colour[i]].push_back(static_cast<int>(i));
     }
-    void iterate(Progress& progress) override {
-        real relative = infinity;
+    void iterate(linear::StopTest& stop, real relative) override {
         do {
             for (const auto& list : of_colour_) sweep(list);
             residual(system_.A, x_, b_, r_);
             relative = std::sqrt(dot(r_, r_)) / b_norm_;
-            progress.count(relative);
-        } while (progress.wants_more(relative));
+            stop.count(relative);
+        } while (stop.wants_more(relative));
     }
     void sweep(const std::vector<int>& list) {
         for_each_block(list.size(), [&](std::size_t begin, std::size_t end) {
@@ -64,9 +63,7 @@ private:
     static constexpr real omega = 0.9;
 
     void prepare() override {}
-    void iterate(Progress& progress) override {
-        real relative = infinity;
-        residual(system_.A, x_, b_, r_);
+    void iterate(linear::StopTest& stop, real relative) override {
         do {
             for_each_block(x_.size(), [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i)
@@ -74,8 +71,8 @@ private:
             });
             residual(system_.A, x_, b_, r_);
             relative = std::sqrt(dot(r_, r_)) / b_norm_;
-            progress.count(relative);
-        } while (progress.wants_more(relative));
+            stop.count(relative);
+        } while (stop.wants_more(relative));
     }
 };
 

@@ -6,36 +6,38 @@
 // In a smooth flow eight neighbouring points mostly have displacements of one sign along every axis. Then one outer node has zero weight
 // for all of them and is not read: 8 nodes instead of 27, with bitwise equal results.
 #pragma once
-#include "staggered/lanes.hpp"
+#include "core/simd.hpp"
 #include "staggered/sample.hpp"
 
 namespace weir::staggered {
+
+using simd::larger, simd::smaller, simd::magnitude, simd::Side;
+using Lanes = simd::d8;
+inline constexpr int lanes = simd::width<Lanes>;
 
 /// A value and the range of the nodes with nonzero weight.
 struct Bounded {
     Lanes value, low, high;
 };
 
-[[gnu::always_inline]] inline Lanes blend(const Lanes& d, const Lanes& below, const Lanes& here, const Lanes& above) {
+WEIR_INLINE Lanes blend(const Lanes& d, const Lanes& below, const Lanes& here, const Lanes& above) {
     const Lanes zero{};
     return (larger(-d, zero) * below + larger(d, zero) * above) + (1 - magnitude(d)) * here;
 }
-[[gnu::always_inline]] inline Bounded blend(const Lanes& d, const Bounded& below, const Bounded& here, const Bounded& above) {
+WEIR_INLINE Bounded blend(const Lanes& d, const Bounded& below, const Bounded& here, const Bounded& above) {
     const Lanes zero{};
     const Lanes low = d < zero ? below.low : d > zero ? above.low : here.low;
     const Lanes high = d < zero ? below.high : d > zero ? above.high : here.high;
     return {blend(d, below.value, here.value, above.value), smaller(here.low, low), larger(here.high, high)};
 }
 /// Where all points lie on the side of `other`, or all on their homes.
-[[gnu::always_inline]] inline Lanes blend_one_side(const Lanes& d, const Lanes& here, const Lanes& other) {
+WEIR_INLINE Lanes blend_one_side(const Lanes& d, const Lanes& here, const Lanes& other) {
     return magnitude(d) * other + (1 - magnitude(d)) * here;
 }
-[[gnu::always_inline]] inline Bounded blend_one_side(const Lanes& d, const Bounded& here, const Bounded& other) {
+WEIR_INLINE Bounded blend_one_side(const Lanes& d, const Bounded& here, const Bounded& other) {
     return {blend_one_side(d, here.value, other.value), smaller(here.low, other.low), larger(here.high, other.high)};
 }
-[[gnu::always_inline]] inline Lanes blend_halves(const Lanes& d, const Lanes& below, const Lanes& above) {
-    return (0.5 - d) * below + (0.5 + d) * above;
-}
+WEIR_INLINE Lanes blend_halves(const Lanes& d, const Lanes& below, const Lanes& above) { return (0.5 - d) * below + (0.5 + d) * above; }
 
 /// Eight neighbouring points of a row: displacements from their homes [cells], and the common sign of each component.
 template <int D>
@@ -44,9 +46,9 @@ struct NearPoints {
     std::array<Side, D> side;
     unsigned mixed = 0;  // bits of the axes with displacements of both signs
 
-    [[gnu::always_inline]] void find_sides() {
+    WEIR_INLINED void find_sides() {
         for (std::size_t a = 0; a < D; ++a) {
-            side[a] = side_of(d[a]);
+            side[a] = simd::side_of(d[a]);
             mixed |= side[a] == Side::both ? 1U << a : 0U;
         }
     }
@@ -57,13 +59,13 @@ struct NearPoints {
 template <class Value, unsigned Aligned, int D>
 class Near {
 public:
-    [[gnu::always_inline]] Near(const NearPoints<D>& points, const std::array<int, D>& strides) : x(points) {
+    WEIR_INLINED Near(const NearPoints<D>& points, const std::array<int, D>& strides) : x(points) {
         for (std::size_t a = 0; a < D; ++a) {
             stride[a] = a == 0 ? 1 : strides[a];
             step[a] = static_cast<int>(points.side[a]) * stride[a];
         }
     }
-    [[gnu::always_inline]] Value at(const real* q) const {
+    WEIR_INLINED Value at(const real* q) const {
         const unsigned mixed = x.mixed & Aligned;
         if (mixed == 0) return along<D - 1, 0>(q);
         if constexpr ((Aligned & (Aligned - 1)) != 0) {  // with several axes one with mixed signs is more frequent than all
@@ -76,10 +78,10 @@ public:
 
 private:
     template <int Axis, unsigned Mixed>
-    [[gnu::always_inline]] Value along(const real* q) const {
+    WEIR_INLINED Value along(const real* q) const {
         constexpr auto a = static_cast<std::size_t>(Axis);
         if constexpr (Axis < 0) {
-            const Lanes v = load(q);
+            const Lanes v = simd::load<Lanes>(q);
             if constexpr (std::is_same_v<Value, Lanes>)
                 return v;
             else
@@ -110,10 +112,10 @@ const real* near_node(const RowView<D>& v) {
 
 /// f(i, points, count) for each group of eight points of a row.
 template <int D, class F>
-[[gnu::always_inline]] inline void for_each_near(const Displacement<D>& x, int count, F&& f) {
+WEIR_INLINE void for_each_near(const Displacement<D>& x, int count, F&& f) {
     for (int i = 0; i < count; i += lanes) {
         NearPoints<D> points;
-        for (std::size_t a = 0; a < D; ++a) points.d[a] = load(&x.d[a][i], count - i);
+        for (std::size_t a = 0; a < D; ++a) points.d[a] = simd::load(&x.d[a][i], count - i);
         points.find_sides();
         f(i, points, count - i);
     }
@@ -124,7 +126,7 @@ void near_row(const RowView<D>& v, const Displacement<D>& x, int count, real* ou
     const real* q = near_node(v);
     for_each_near(
         x, count, [&](int i, const NearPoints<D>& points, int rest) __attribute__((always_inline)) {
-            store(out + i, Near<Lanes, Aligned, D>(points, v.stride).at(q + i), rest);
+            simd::store(out + i, Near<Lanes, Aligned, D>(points, v.stride).at(q + i), rest);
         });
 }
 
@@ -167,9 +169,9 @@ void sample_near_bounded(const RowView<D>& v, const Displacement<D>& x, int coun
     for_each_near(
         x, count, [&](int i, const NearPoints<D>& points, int rest) __attribute__((always_inline)) {
             const Bounded b = Near<Bounded, (1U << D) - 1, D>(points, v.stride).at(v.q + i);
-            store(out + i, b.value, rest);
-            store(low + i, b.low, rest);
-            store(high + i, b.high, rest);
+            simd::store(out + i, b.value, rest);
+            simd::store(low + i, b.low, rest);
+            simd::store(high + i, b.high, rest);
         });
 }
 

@@ -115,11 +115,12 @@ public:
         const real* q = q_ + i;
         const int up = stride_[B];
         if constexpr (B == Home)
-            return load(q);
+            return simd::load<Lanes>(q);
         else if constexpr (Home < 0)
-            return 0.5 * (load(q) + load(q + up));
+            return 0.5 * (simd::load<Lanes>(q) + simd::load<Lanes>(q + up));
         else
-            return 0.25 * ((load(q) + load(q + up)) + (load(q - stride_[Home]) + load(q - stride_[Home] + up)));
+            return 0.25 * ((simd::load<Lanes>(q) + simd::load<Lanes>(q + up)) +
+                           (simd::load<Lanes>(q - stride_[Home]) + simd::load<Lanes>(q - stride_[Home] + up)));
     }
     [[gnu::always_inline]] Lanes at(const NearPoints<D>& x, int i) const {
         const int lower = Home < 0 || Home == B ? 0 : stride_[static_cast<std::size_t>(std::max(Home, 0))];
@@ -179,7 +180,7 @@ void GridBacktrace<D>::near_midpoint(const Index<D>& first, int count, real dt, 
         for (std::size_t a = 0; a < D; ++a) x.d[a] = inside(half[a] * k[a], a);
         x.find_sides();
         u.at(x, i, k);
-        for (std::size_t a = 0; a < D; ++a) store(&to.d[a][i], inside(whole[a] * k[a], a));
+        for (std::size_t a = 0; a < D; ++a) simd::store(&to.d[a][i], inside(whole[a] * k[a], a));
     };
     for (int i = 0; i < count; i += lanes) {
         if (!beside && first[0] + i > 0 && first[0] + i + lanes < cells_end) {
@@ -187,7 +188,7 @@ void GridBacktrace<D>::near_midpoint(const Index<D>& first, int count, real dt, 
                 i, [](const Lanes& d, std::size_t) __attribute__((always_inline)) { return d; });
             continue;
         }
-        const Lanes along_row = counting() + i;
+        const Lanes along_row = Lanes{0, 1, 2, 3, 4, 5, 6, 7} + i;
         follow(
             i, [&](const Lanes& d, std::size_t a) __attribute__((always_inline)) {
                 const Lanes zero{}, step = a == 0 ? along_row : zero, low = reach[a][0] - step, high = reach[a][1] - step;

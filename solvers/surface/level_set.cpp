@@ -300,7 +300,7 @@ bool LevelSet<D>::passes(const Index<D>& I, int axis, int by) const {
 /// samples along x in one vector.
 template <int D>
 real LevelSet<D>::cubic_near(const Index<D>& I, const Vec<D>& d) const {
-    using Quad = double __attribute__((vector_size(32)));
+    using Quad = simd::Pack<real, 4>;
     std::array<std::array<real, 4>, D> w;
     const real* at = &phi(I);
     for (int axis = 0; axis < D; ++axis) {
@@ -310,9 +310,7 @@ real LevelSet<D>::cubic_near(const Index<D>& I, const Vec<D>& d) const {
     const auto plane = [&](const real* q) {
         Quad sum{};
         for (std::size_t j = 0; j < 4; ++j, q += phi.stride(1)) {
-            Quad row;
-            std::memcpy(&row, q, sizeof row);
-            sum += w[1][j] * row;
+            sum += w[1][j] * simd::load<Quad>(q);
         }
         return sum;
     };

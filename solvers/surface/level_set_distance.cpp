@@ -28,7 +28,7 @@ void LevelSet<D>::find_inside() {
         std::uint8_t* to = inside_.data() + at;
         std::size_t i = 0;
         for (; i + marker_lanes <= n; i += marker_lanes) {
-            const auto below = __builtin_convertvector(load_lanes(from + i, marker_lanes) < Lanes{}, LaneBytes);
+            const auto below = __builtin_convertvector(simd::load<Lanes>(from + i) < Lanes{}, LaneBytes);
             const LaneBytes flag = below & 1;
             std::memcpy(to + i, &flag, sizeof flag);
         }

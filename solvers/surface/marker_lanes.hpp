@@ -2,69 +2,26 @@
 // cell of them, read the same few faces around it: loads are shared and no interval search is needed. The weight of the node at distance k
 // cells from the centre is a hat function of the marker's distance d:  w_k = max(0, 1 − |d − k|).
 #pragma once
+#include "core/simd.hpp"
 #include "surface/markers.hpp"
 #include "surface/thin_walls.hpp"
 
 #include <cstring>
 #include <utility>
 
-#ifdef __AVX512F__
-#include <immintrin.h>
-#endif
-
 namespace weir::surface {
 
-inline constexpr int marker_lanes = 8;
-using Lanes = double __attribute__((vector_size(sizeof(double) * marker_lanes)));
-using LaneBytes = std::int8_t __attribute__((vector_size(marker_lanes)));
-using LaneIndex = std::int64_t __attribute__((vector_size(sizeof(double) * marker_lanes)));
+using Lanes = simd::d8;
+inline constexpr int marker_lanes = simd::width<Lanes>;
+using LaneBytes = simd::Pack<std::int8_t, marker_lanes>;
 
 /// One point per lane.
 template <int D>
 struct LaneVec : std::array<Lanes, D> {};
 
-#define WEIR_LANES inline __attribute__((always_inline))
-
-/// Loads `count` values; the remaining lanes repeat the last one. Only these `count` are accessed: the next marker may belong to another
-/// thread.
-WEIR_LANES Lanes load_lanes(const real* from, int count) {
-#ifdef __AVX512F__
-    const auto own = static_cast<__mmask8>((1u << count) - 1);
-    const LaneIndex lane{0, 1, 2, 3, 4, 5, 6, 7}, last = LaneIndex{} + (count - 1), from_lane = lane < last ? lane : last;
-    return _mm512_maskz_permutexvar_pd(0xff, reinterpret_cast<__m512i>(from_lane), _mm512_maskz_loadu_pd(own, from));
-#else
-    Lanes v;
-    if (count == marker_lanes)
-        std::memcpy(&v, from, sizeof v);
-    else
-        for (int l = 0; l < marker_lanes; ++l) v[l] = from[l < count ? l : count - 1];
-    return v;
-#endif
-}
-WEIR_LANES void store_lanes(real* to, const Lanes& v, int count) {
-#ifdef __AVX512F__
-    _mm512_mask_storeu_pd(to, static_cast<__mmask8>((1u << count) - 1), v);
-#else
-    if (count == marker_lanes)
-        std::memcpy(to, &v, sizeof v);
-    else
-        for (int l = 0; l < count; ++l) to[l] = v[l];
-#endif
-}
-/// Returns whether |v| is at most `limit` in every lane; false for NaN.
-WEIR_LANES bool all_within(const Lanes& v, real limit) {
-#ifdef __AVX512F__
-    return _mm512_cmp_pd_mask(_mm512_abs_pd(v), _mm512_set1_pd(limit), _CMP_LE_OQ) == 0xff;
-#else
-    bool within = true;
-    for (int l = 0; l < marker_lanes; ++l) within = within && std::abs(v[l]) <= limit;
-    return within;
-#endif
-}
-
 /// Distance of points from the centre of cell I [cells].
 template <int D>
-WEIR_LANES LaneVec<D> from_centre(const Frame<D>& frame, const Index<D>& I, const LaneVec<D>& x) {
+WEIR_INLINE LaneVec<D> from_centre(const Frame<D>& frame, const Index<D>& I, const LaneVec<D>& x) {
     LaneVec<D> d;
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
@@ -73,9 +30,9 @@ WEIR_LANES LaneVec<D> from_centre(const Frame<D>& frame, const Index<D>& I, cons
     return d;
 }
 template <int D>
-WEIR_LANES LaneVec<D> load_positions(const Markers<D>& markers, std::size_t p, int count) {
+WEIR_INLINE LaneVec<D> load_positions(const Markers<D>& markers, std::size_t p, int count) {
     LaneVec<D> x;
-    for (std::size_t a = 0; a < D; ++a) x[a] = load_lanes(markers.x[a].data() + p, count);
+    for (std::size_t a = 0; a < D; ++a) x[a] = simd::load_first(markers.x[a].data() + p, count);
     return x;
 }
 
@@ -86,7 +43,7 @@ struct Hats {
     std::array<std::array<Lanes, 3>, D> centre;
     std::array<std::array<Lanes, Wide ? 4 : 2>, D> face;
 
-    WEIR_LANES explicit Hats(const LaneVec<D>& d) {
+    WEIR_INLINE explicit Hats(const LaneVec<D>& d) {
         const Lanes zero{};
         for (std::size_t axis = 0; axis < D; ++axis) {
             const Lanes x = d[axis];
@@ -108,7 +65,7 @@ struct Hats {
     }
     /// Component A along axes 0 .. Axis; q is the cell's own node.
     template <int A, int Axis>
-    WEIR_LANES Lanes along(const real* q, const std::array<std::ptrdiff_t, D>& stride) const {
+    WEIR_INLINE Lanes along(const real* q, const std::array<std::ptrdiff_t, D>& stride) const {
         const auto node = [&](int k) {
             if constexpr (Axis == 0)
                 return q[k];
@@ -180,7 +137,7 @@ public:
     }
     /// Interpolation of velocity component A; of a cell field for A = −1.
     template <int A, bool Wide>
-    WEIR_LANES Lanes at(const Hats<D, Wide>& hats) const {
+    WEIR_INLINE Lanes at(const Hats<D, Wide>& hats) const {
         return hats.template along<A, D - 1>(node_, stride_);
     }
 
@@ -212,7 +169,7 @@ public:
     }
     /// The velocity at points d [cells] from the cell's centre: at most half a cell, or, if Wide, a cell.
     template <bool Wide>
-    WEIR_LANES LaneVec<D> velocity(const LaneVec<D>& d) const {
+    WEIR_INLINE LaneVec<D> velocity(const LaneVec<D>& d) const {
         const Hats<D, Wide> hats(d);
         LaneVec<D> v;
         v[0] = along_[0].template at<0>(hats);

@@ -40,7 +40,7 @@ struct Walls {
             if (!sides.open(d, 1) && !frame.periodic(d)) hi[d] = first + frame.h[d] * frame.cells[d] - margin;
         }
     }
-    WEIR_LANES LaneVec<D> keep_inside(const LaneVec<D>& x) const {
+    WEIR_INLINE LaneVec<D> keep_inside(const LaneVec<D>& x) const {
         LaneVec<D> inside;
         for (int d = 0; d < D; ++d) {
             const auto at = static_cast<std::size_t>(d);
@@ -57,14 +57,14 @@ struct Walls {
 
 /// The points after dt by RK2, if their midpoints lie within half a cell of them, which the stencil of their cell covers.
 template <int D>
-WEIR_LANES bool trace_midpoint(const CellFaces<D>& faces, const Frame<D>& frame, const Index<D>& I, real dt, LaneVec<D>& x) {
+WEIR_INLINE bool trace_midpoint(const CellFaces<D>& faces, const Frame<D>& frame, const Index<D>& I, real dt, LaneVec<D>& x) {
     auto d = from_centre(frame, I, x);
     const auto k1 = faces.template velocity<false>(d);
     bool near = true;
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         const Lanes half = k1[at] * (0.5 * dt * frame.inv_h[a]);
-        near = near & all_within(half, 0.5);
+        near = near & simd::all_within(half, 0.5);
         d[at] += half;
     }
     if (!near) return false;
@@ -96,7 +96,7 @@ void move_markers(Markers<D>& markers, const MacVelocity<D>& u, const Frame<D>& 
             const bool together = order == Trace::rk2 && trace_midpoint(faces, frame, I, dt, x);
             if (together) {
                 x = walls.keep_inside(x);
-                for (std::size_t a = 0; a < D; ++a) store_lanes(markers.x[a].data() + p, x[a], count);
+                for (std::size_t a = 0; a < D; ++a) simd::store_first(markers.x[a].data() + p, x[a], count);
                 if (!walls.wraps && near_solid.empty()) continue;
             }
             for (std::size_t marker = p; marker < p + static_cast<std::size_t>(count); ++marker) {

@@ -66,7 +66,7 @@ void for_each_block(int count, F&& f) {
 /// As Frame::cell_of, for many points; negative values are clamped to 0, so rounding towards 0 is sufficient.
 template <int D>
 void Markers<D>::find_cells(const Frame<D>& frame, int first, int last) {
-    using Cells = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * marker_lanes)));
+    using Cells = simd::Pack<std::int32_t, marker_lanes>;
     for (int p = first; p < last; p += marker_lanes) {
         const int count = std::min(marker_lanes, last - p);
         const LaneVec<D> at = load_positions(*this, static_cast<std::size_t>(p), count);

@@ -1,4 +1,5 @@
 // Conjugate gradients preconditioned by the multigrid cycle, in double precision on shared rows.
+#include "linear/conjugate_gradients.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "tallcell/column_rows.hpp"
@@ -163,6 +164,61 @@ void ColumnMultigrid::precondition(const ColumnMatrix& A, const Knots& knots, co
     for (real& value : z) value *= scale_;
 }
 
+struct ColumnMultigrid::System {
+    static constexpr linear::Norm norm = linear::Norm::residual;
+    ColumnMultigrid& of;
+    const ColumnMatrix& A;
+    real largest, b_norm;  // of r; ‖b‖
+    real zAp = 0;          // before scaling
+
+    /// The inner products with r and with the last A p in one pass.
+    real precondition() {
+        of.precondition(A, largest);
+        const LineStore<float>& z = of.levels_[0].x;
+        const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
+            real with_Ap = 0, zr = 0;
+#pragma omp simd reduction(+ : with_Ap, zr)
+            for (std::size_t i = begin; i < end; ++i) {
+                with_Ap += static_cast<real>(z[i]) * of.Ap_[i];
+                zr += static_cast<real>(z[i]) * of.r_[i];
+            }
+            return std::array{with_Ap, zr};
+        });
+        zAp = parts.sum(0);
+        return of.scale_ * parts.sum(1);
+    }
+    /// A single-precision preconditioner is not exactly constant.
+    real flexible_beta(const linear::Step& last) const { return -last.alpha * of.scale_ * zAp / last.rz; }
+    void update_direction(real beta) {
+        const LineStore<float>& z = of.levels_[0].x;
+        for_each_block_of_lines(A, [&](int, std::size_t begin, std::size_t end) {
+            if (beta == 0)
+                for (std::size_t i = begin; i < end; ++i) of.p_[i] = of.scale_ * static_cast<real>(z[i]);
+            else
+                for (std::size_t i = begin; i < end; ++i) of.p_[i] = of.scale_ * static_cast<real>(z[i]) + beta * of.p_[i];
+        });
+        interpolate(A, of.p_);  // exact interpolation: single precision has it only nearly
+        refresh_lines(A, of.p_);
+    }
+    real multiply() { return multiply_and_dot(A, of.p_, of.Ap_); }
+    real advance(real alpha) {
+        const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
+            real squares = 0, most = 0;
+#pragma omp simd reduction(+ : squares) reduction(max : most)
+            for (std::size_t i = begin; i < end; ++i) {
+                of.x_[i] += alpha * of.p_[i];
+                const real r = of.r_[i] - alpha * of.Ap_[i];
+                of.r_[i] = r;
+                squares += r * r;
+                most = std::max(most, std::abs(r));
+            }
+            return std::array{squares, most};
+        });
+        largest = parts.largest(1);
+        return std::sqrt(parts.sum(0)) / b_norm;
+    }
+};
+
 const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const Knots& knots, const std::vector<real>& b, std::vector<real>& x) {
     report_.history.clear();
     report_.iterations = 0;
@@ -181,21 +237,12 @@ const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const Knots
         size = scale, r.largest = r.b_largest;
     }
     report_.residual_before = scale > 0 ? size / scale : 0;
-    real rz = 0, alpha = 0;
-    while (size > options_.tolerance * scale) {
-        if (report_.iterations == options_.max_iterations) {
-            if (options_.fixed_iterations) break;
-            throw NumericalFailure("pressure", "the residual is still " + std::to_string(size / scale) + " of the right-hand side after " +
-                                                   std::to_string(report_.iterations) + " iterations");
-        }
-        precondition(A, r.largest);
-        update_direction(A, report_.iterations == 0, alpha, rz);
-        alpha = rz / multiply_and_dot(A, p_, Ap_);
-        if (!std::isfinite(alpha)) throw NumericalFailure("pressure", "conjugate gradients broke down");
-        size = advance(A, alpha, r.largest);
-        ++report_.iterations;
-        if (options_.record_history) report_.history.push_back(size / scale);
-    }
+    System system{*this, A, r.largest, scale};
+    linear::StopTest stop(options_.tolerance, options_.max_iterations, report_.iterations,
+                          options_.record_history ? &report_.history : nullptr);
+    const linear::Outcome outcome = linear::conjugate_gradients(system, stop, report_.residual_before);
+    const bool accepted = options_.fixed_iterations && std::isfinite(outcome.relative_residual);
+    if (!accepted) linear::require_converged("pressure", "pressure solve", outcome, stop);
     r = residual(A);
     report_.converged = r.norm <= 2 * options_.tolerance * scale;
     report_.residual_after = scale > 0 ? r.norm / scale : 0;
@@ -220,49 +267,6 @@ ColumnMultigrid::Residual ColumnMultigrid::residual(const ColumnMatrix& A) {
         return std::array{squares, most, b_squares, b_most};
     });
     return {std::sqrt(parts.sum(0)), parts.largest(1), parts.sum(2), parts.largest(3)};
-}
-
-/// p = z + β p, with Polak and Ribière's β, z·(r − r₋)/(z₋·r₋) with r − r₋ = −α A p, because a single-precision preconditioner is not
-/// exactly constant. Sets rz to z·r.
-void ColumnMultigrid::update_direction(const ColumnMatrix& A, bool first, real alpha, real& rz) {
-    const LineStore<float>& z = levels_[0].x;
-    const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
-        real zAp = 0, zr = 0;
-#pragma omp simd reduction(+ : zAp, zr)
-        for (std::size_t i = begin; i < end; ++i) {
-            zAp += static_cast<real>(z[i]) * Ap_[i];
-            zr += static_cast<real>(z[i]) * r_[i];
-        }
-        return std::array{zAp, zr};
-    });
-    const real beta = first ? 0 : -alpha * scale_ * parts.sum(0) / rz;
-    rz = scale_ * parts.sum(1);
-    for_each_block_of_lines(A, [&](int, std::size_t begin, std::size_t end) {
-        if (first)
-            for (std::size_t i = begin; i < end; ++i) p_[i] = scale_ * static_cast<real>(z[i]);
-        else
-            for (std::size_t i = begin; i < end; ++i) p_[i] = scale_ * static_cast<real>(z[i]) + beta * p_[i];
-    });
-    interpolate(A, p_);  // exact interpolation: single precision has it only nearly
-    refresh_lines(A, p_);
-}
-
-/// x += α p,  r −= α A p; returns ‖r‖.
-real ColumnMultigrid::advance(const ColumnMatrix& A, real alpha, real& largest) {
-    const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
-        real squares = 0, most = 0;
-#pragma omp simd reduction(+ : squares) reduction(max : most)
-        for (std::size_t i = begin; i < end; ++i) {
-            x_[i] += alpha * p_[i];
-            const real r = r_[i] - alpha * Ap_[i];
-            r_[i] = r;
-            squares += r * r;
-            most = std::max(most, std::abs(r));
-        }
-        return std::array{squares, most};
-    });
-    largest = parts.largest(1);
-    return std::sqrt(parts.sum(0));
 }
 
 }  // namespace weir::tallcell

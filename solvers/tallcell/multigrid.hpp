@@ -64,8 +64,7 @@ private:
         real norm, largest, b_squares, b_largest;
     };
     Residual residual(const ColumnMatrix& A);
-    void update_direction(const ColumnMatrix& A, bool first, real alpha, real& rz);
-    real advance(const ColumnMatrix& A, real alpha, real& largest);
+    struct System;
 
     poisson::Options options_;
     int sweeps_;

@@ -1,34 +1,17 @@
 // Traces and samples eight faces of one kind, adjacent along x. Where no point moves farther than one cell, the stencil consists of the
 // three nearest samples (or two, for faces of another kind) along each axis, with hat functions as weights. So all loads are contiguous.
 #pragma once
+#include "core/simd.hpp"
 #include "staggered/velocity.hpp"
 
 #include <array>
-#include <cstdint>
-#include <cstring>
 #include <type_traits>
 
 namespace weir::tallcell {
 
-inline constexpr int row_lanes = 8;
-using Eight = double __attribute__((vector_size(sizeof(double) * row_lanes)));
-using EightFlags = std::int64_t __attribute__((vector_size(sizeof(double) * row_lanes)));
-
-#define WEIR_EIGHT inline __attribute__((always_inline))
-
-WEIR_EIGHT Eight load_eight(const real* from) {
-    Eight v;
-    std::memcpy(&v, from, sizeof v);
-    return v;
-}
-WEIR_EIGHT Eight least(const Eight& a, const Eight& b) { return b < a ? b : a; }
-WEIR_EIGHT Eight most(const Eight& a, const Eight& b) { return a < b ? b : a; }
-WEIR_EIGHT Eight magnitude(const Eight& a) { return most(a, -a); }
-WEIR_EIGHT bool all_of_eight(const EightFlags& flags) {
-    std::int64_t all = -1;
-    for (int i = 0; i < row_lanes; ++i) all &= flags[i];
-    return all != 0;
-}
+using simd::larger, simd::smaller, simd::magnitude;
+using Eight = simd::d8;
+inline constexpr int row_lanes = simd::width<Eight>;
 
 /// Displacements [cells] of eight faces.
 template <int D>
@@ -40,10 +23,10 @@ struct Hat {
     static constexpr int count = Own ? 3 : 2;
     std::array<Eight, count> weight;
     int first;
-    WEIR_EIGHT Hat(const Eight& d, bool above) : first(Own || !above ? -1 : 0) {
+    WEIR_INLINE Hat(const Eight& d, bool above) : first(Own || !above ? -1 : 0) {
         const Eight none{};
         if constexpr (Own)
-            weight = {most(none, -d), 1 - magnitude(d), most(none, d)};
+            weight = {larger(none, -d), 1 - magnitude(d), larger(none, d)};
         else
             weight = {0.5 - d, 0.5 + d};
     }
@@ -51,14 +34,14 @@ struct Hat {
 
 /// Σ of the weights along x, y and z times the samples; q is the first sample of the first face.
 template <int D, bool X, bool Y, bool Z>
-WEIR_EIGHT Eight sum_of_hats(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Hat<X>& x, const Hat<Y>& y, const Hat<Z>& z) {
+WEIR_INLINE Eight sum_of_hats(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, const Hat<X>& x, const Hat<Y>& y, const Hat<Z>& z) {
     Eight sum{};
     for (int k = 0; k < (D == 3 ? Hat<Z>::count : 1); ++k) {
         Eight plane{};
         for (int j = 0; j < Hat<Y>::count; ++j) {
             const real* row = q + (D == 3 ? (z.first + k) * sz : 0) + (y.first + j) * sy + x.first;
             Eight line{};
-            for (int i = 0; i < Hat<X>::count; ++i) line += x.weight[static_cast<std::size_t>(i)] * load_eight(row + i);
+            for (int i = 0; i < Hat<X>::count; ++i) line += x.weight[static_cast<std::size_t>(i)] * simd::load<Eight>(row + i);
             plane += y.weight[static_cast<std::size_t>(j)] * line;
         }
         if constexpr (D == 2) return plane;
@@ -91,12 +74,13 @@ inline void bounds_near(const real* q, std::ptrdiff_t sy, std::ptrdiff_t sz, con
     for (std::size_t k = 0; k < (D == 3 ? 3 : 1); ++k)
         for (std::size_t j = 0; j < 3; ++j) {
             const real* row = q + (D == 3 ? (static_cast<std::ptrdiff_t>(k) - 1) * sz : 0) + (static_cast<std::ptrdiff_t>(j) - 1) * sy;
-            const EightFlags counts = D == 3 ? (y.weight[j] > none) & (z.weight[k] > none) : y.weight[j] > none;
+            const auto counts = D == 3 ? (y.weight[j] > none) & (z.weight[k] > none) : y.weight[j] > none;
             // for a displacement by a whole cell the middle has zero weight; it is adjacent and is included
-            const Eight middle = load_eight(row);
-            const Eight a = x.weight[0] > none ? load_eight(row - 1) : middle, b = x.weight[2] > none ? load_eight(row + 1) : middle;
-            low = counts ? least(low, least(middle, least(a, b))) : low;
-            high = counts ? most(high, most(middle, most(a, b))) : high;
+            const Eight middle = simd::load<Eight>(row);
+            const Eight a = x.weight[0] > none ? simd::load<Eight>(row - 1) : middle,
+                        b = x.weight[2] > none ? simd::load<Eight>(row + 1) : middle;
+            low = counts ? smaller(low, smaller(middle, smaller(a, b))) : low;
+            high = counts ? larger(high, larger(middle, larger(a, b))) : high;
         }
 }
 

@@ -271,7 +271,7 @@ bool Transport<D>::change_of_eight(int a, Index<D> I, real row, real dt, Eight& 
         const Eight k = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), d, a, b);
         if (b == a) here = k;
         from[at(b)] -= dt * frame_.inv_h[b] * k;
-        if (!all_of_eight(magnitude(from[at(b)]) <= 1)) return false;
+        if (!simd::all(magnitude(from[at(b)]) <= 1)) return false;
     }
     const auto& u = (*source_)[a];
     change = sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), from, a, a) - here;
@@ -285,17 +285,18 @@ template <bool Correct>
 bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) const {
     const auto component = [](int b) { return static_cast<std::size_t>(b); };
     Moved<D> k, half, from;
-    EightFlags near = EightFlags{} - 1;
+    auto near = Eight{} == Eight{};
     for (int b = 0; b < D; ++b) {
         const auto& u = (*source_)[b];
         const real* q = u.data() + u.linear(I);
         const std::ptrdiff_t below = u.stride(a), above = u.stride(b);
-        const Eight v = b == a ? load_eight(q)
-                               : 0.25 * ((load_eight(q) + load_eight(q - below)) + (load_eight(q + above) + load_eight(q + above - below)));
+        const Eight v = b == a ? simd::load<Eight>(q)
+                               : 0.25 * ((simd::load<Eight>(q) + simd::load<Eight>(q - below)) +
+                                         (simd::load<Eight>(q + above) + simd::load<Eight>(q + above - below)));
         k[component(b)] = frame_.inv_h[b] * dt * v;
         near &= magnitude(k[component(b)]) <= 1;
     }
-    if (!all_of_eight(near)) return false;
+    if (!simd::all(near)) return false;
     const auto trace = [&](real sign) {
         for (std::size_t b = 0; b < D; ++b) half[b] = 0.5 * sign * k[b];
         for (int b = 0; b < D; ++b) {
@@ -304,7 +305,7 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
                 sign * dt * frame_.inv_h[b] * sample_near<D>(u.data() + u.linear(I), u.stride(1), u.stride(D - 1), half, a, b);
             near &= magnitude(from[component(b)]) <= 1;
         }
-        return all_of_eight(near);
+        return simd::all(near);
     };
     if (!trace(-1)) return false;
     const auto& u = (*source_)[a];
@@ -317,7 +318,7 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
         if (!trace(1)) return false;
         const auto& predicted = predicted_[a];  // the result of departed() in the first pass
         const Eight back = sample_near<D>(predicted.data() + first, sy, sz, from, a, a);
-        to = least(most(load_eight(predicted.data() + first) + 0.5 * (load_eight(u.data() + first) - back), low), high);
+        to = smaller(larger(simd::load<Eight>(predicted.data() + first) + 0.5 * (simd::load<Eight>(u.data() + first) - back), low), high);
     }
     return true;
 }

@@ -120,7 +120,7 @@ real BodyRows<D>::multiply(const MacState<D>& s, real dt_nu, const Faces& p, Fac
 }
 
 template <int D>
-void BodyRows<D>::walk(real alpha) {
+void BodyRows<D>::advance(real alpha) {
     for (std::size_t b = 0; b < r_.size(); ++b)
         for (std::size_t k = 0; k < n; ++k) {
             r_[b][k] -= alpha * z_[b][k];

@@ -43,7 +43,7 @@ public:
     real precondition();
     void update_direction(const MacState<D>& s, real beta, Faces& p);
     real multiply(const MacState<D>& s, real dt_nu, const Faces& p, Faces& image);
-    void walk(real alpha);
+    void advance(real alpha);
     /// Computes the friction impulses [N s], [N m s]; `image` contains dt ν K u of inside faces.
     void finish(MacState<D>& s, real dt_nu, const Faces& u, Faces& image);
 

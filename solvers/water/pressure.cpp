@@ -67,7 +67,7 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
         Cell* cell = A_.cells.data() + at;
         int first = 0;
         for (; first + marker_lanes <= n; first += marker_lanes) {
-            const auto below = __builtin_convertvector(load_lanes(phi + first, marker_lanes) < Lanes{} + thin, LaneBytes);
+            const auto below = __builtin_convertvector(simd::load<Lanes>(phi + first) < Lanes{} + thin, LaneBytes);
             const LaneBytes kind =
                 below ? LaneBytes{} + static_cast<std::int8_t>(Cell::fluid) : LaneBytes{} + static_cast<std::int8_t>(Cell::air);
             std::memcpy(cell + first, &kind, sizeof kind);

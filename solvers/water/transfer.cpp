@@ -51,7 +51,7 @@ class CellSums {
 public:
     static constexpr int most = 4 * marker_lanes;  // markers per batch
 
-    WEIR_LANES CellSums(const Markers<D>& m, const Frame<D>& frame, const Index<D>& I, std::size_t p, int count) {
+    WEIR_INLINE CellSums(const Markers<D>& m, const Frame<D>& frame, const Index<D>& I, std::size_t p, int count) {
         for (int first = 0; first < count; first += marker_lanes) {
             const int here = std::min(marker_lanes, count - first);
             find_weights(from_centre(frame, I, load_positions(m, p + static_cast<std::size_t>(first), here)), first);
@@ -60,7 +60,7 @@ public:
         for (std::size_t a = 0; a < D; ++a) v[a] = m.v[a].data() + p;
         add_all(v, count);
     }
-    WEIR_LANES void add_to(FaceSums<D>& sums, const Frame<D>& frame, const Index<D>& I) const {
+    WEIR_INLINE void add_to(FaceSums<D>& sums, const Frame<D>& frame, const Index<D>& I) const {
         add_rows<0, x_rows>(x_, sums.sum[0], frame, I);
         add_rows<1, y_rows>(y_, sums.sum[1], frame, I);
         if constexpr (D == 3) add_rows<2, z_rows>(z_, sums.sum[2], frame, I);
@@ -69,13 +69,13 @@ public:
 private:
     // rows of faces along x, y, z: (3, 2, 3) along y times (3, 3, 2) along z
     static constexpr std::size_t x_rows = D == 2 ? 3 : 9, y_rows = D == 2 ? 2 : 6, z_rows = D == 2 ? 1 : 6;
-    using Quad = double __attribute__((vector_size(32)));
-    using Pair = double __attribute__((vector_size(16)));
+    using Quad = simd::Pack<real, 4>;
+    using Pair = simd::Pack<real, 2>;
     using Weights = std::array<real, most>;
 
-    WEIR_LANES void find_weights(const LaneVec<D>& d, int first) {
+    WEIR_INLINE void find_weights(const LaneVec<D>& d, int first) {
         const Hats<D, false> hats(d);
-        const auto keep = [&](Weights& to, const Lanes& w) { store_lanes(to.data() + first, w, marker_lanes); };
+        const auto keep = [&](Weights& to, const Lanes& w) { simd::store(to.data() + first, w); };
         for (std::size_t i = 0; i < 2; ++i) keep(along_face_[i], hats.face[0][i]);
         for (std::size_t i = 0; i < 3; ++i) keep(along_centre_[i], hats.centre[0][i]);
         for (std::size_t j = 0; j < 3; ++j)
@@ -91,7 +91,7 @@ private:
             }
     }
     /// Adds all markers whose weights are computed; v: their velocities.
-    WEIR_LANES void add_all(const std::array<const real*, D>& v, int count) {
+    WEIR_INLINE void add_all(const std::array<const real*, D>& v, int count) {
         Quad x[x_rows]{};
         Lanes y[y_rows]{}, z[z_rows]{};
         const auto one = [](real speed) {  // factors of the weights along x: momentum, weight, momentum, ...
@@ -122,7 +122,7 @@ private:
         for (std::size_t r = 0; r < z_rows; ++r) z_[r] = z[r];
     }
     template <int A, std::size_t rows, class Row>
-    WEIR_LANES static void add_rows(const Row (&row)[rows], Grid<FaceSum, D>& sums, const Frame<D>& frame, const Index<D>& I) {
+    WEIR_INLINE static void add_rows(const Row (&row)[rows], Grid<FaceSum, D>& sums, const Frame<D>& frame, const Index<D>& I) {
         constexpr int along_y = A == 1 ? 2 : 3, first_j = A == 1 ? 0 : -1, first_k = D == 2 || A == 2 ? 0 : -1;
         bool inner = true;
         for (int d = 0; d < D; ++d) inner = inner && is_inner(frame, I, d);
@@ -144,13 +144,13 @@ private:
             }
         }
     }
-    WEIR_LANES static void add_row(const Quad& row, FaceSum* to) { add_to_memory(row, to); }
-    WEIR_LANES static void add_row(const Lanes& row, FaceSum* to) {
+    WEIR_INLINE static void add_row(const Quad& row, FaceSum* to) { add_to_memory(row, to); }
+    WEIR_INLINE static void add_row(const Lanes& row, FaceSum* to) {
         add_to_memory(__builtin_shufflevector(row, row, 0, 1, 2, 3), to);
         add_to_memory(__builtin_shufflevector(row, row, 4, 5), to + 2);
     }
     template <class V>
-    WEIR_LANES static void add_to_memory(const V& v, FaceSum* to) {
+    WEIR_INLINE static void add_to_memory(const V& v, FaceSum* to) {
         V sum;
         std::memcpy(&sum, to, sizeof sum);
         sum += v;
@@ -280,7 +280,7 @@ static void gather(const MacVelocity<D>& u, const Frame<D>& frame, real beta, Ma
             const auto v = faces.template velocity<false>(from_centre(frame, I, load_positions(markers, p, count)));
             for (std::size_t a = 0; a < D; ++a) {
                 real* carried = markers.v[a].data() + p;
-                store_lanes(carried, beta * load_lanes(carried, count) + v[a], count);
+                simd::store_first(carried, beta * simd::load_first(carried, count) + v[a], count);
             }
         }
     });

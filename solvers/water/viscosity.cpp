@@ -1,11 +1,13 @@
 #include "water/viscosity.hpp"
 
-#include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "linear/conjugate_gradients.hpp"
 
 #include <numeric>
 
 namespace weir::water {
+
+static constexpr int max_iterations = 1000;
 
 template <int D>
 SurfaceViscosity<D>::SurfaceViscosity(const Frame<D>& frame, const MacState<D>& state, real theta, bool solids_stick)
@@ -189,55 +191,71 @@ void SurfaceViscosity<D>::set_diagonal(real s) {
     });
 }
 
-/// Conjugate gradients with Jacobi preconditioning, continued from x_ with residual r_ until its square is reduced by the factor
-/// `reduction`.
+/// z = r/diagonal (Jacobi) of the liquid, stored in ap_.
 template <int D>
-void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu, real reduction) {
-    const real s = theta_ * dt_nu;
+void SurfaceViscosity<D>::precondition() {
     for_each_unknown([&](int a, const Index<D>& I) {
         const auto at = static_cast<std::size_t>(a);
-        p_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
+        ap_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
     });
-    real rz = dot(r_, p_);
-    if (bodies_) {
-        rz += bodies_->precondition();
-        bodies_->update_direction(state, 0, p_);
+}
+
+/// (M + s K) δ = r of the liquid's faces and the no-slip bodies.
+template <int D>
+struct SurfaceViscosity<D>::System {
+    static constexpr linear::Norm norm = linear::Norm::natural;
+    SurfaceViscosity& of;
+    const MacState<D>& state;
+    real s;
+
+    /// z of the liquid is computed already.
+    real precondition() {
+        real rz = of.dot(of.r_, of.ap_);
+        if (of.bodies_) rz += of.bodies_->precondition();
+        return rz;
     }
-    const real target = reduction * rz;
-    int count = 0;
-    while (rz > target && rz > 0) {
-        ++iterations_;
-        if (++count > 1000) throw NumericalFailure("velocity", "the viscous solve missed its tolerance after 1000 iterations");
-        refresh_faces<D>(p_, frame_, 1);
-        for_each_unknown([&](int a, const Index<D>& I) {
+    void update_direction(real beta) {
+        of.for_each_unknown([&](int a, const Index<D>& I) {
             const auto at = static_cast<std::size_t>(a);
-            ap_[at](I) = mass_[at](I) * p_[at](I) + s * stress_divergence(p_, a, I, 0);
+            of.p_[at](I) = of.ap_[at](I) + (beta == 0 ? 0 : beta * of.p_[at](I));
         });
-        real met = 0;
-        if (bodies_) {
-            strain_inside(state, p_, s, 0, ap_);
-            met = bodies_->multiply(state, s, p_, ap_);
-        }
-        const real alpha = rz / (dot(p_, ap_) + met);
-        for_each_unknown([&](int a, const Index<D>& I) {
-            const auto at = static_cast<std::size_t>(a);
-            x_[at](I) += alpha * p_[at](I);
-            r_[at](I) -= alpha * ap_[at](I);
-            ap_[at](I) = diagonal_[at](I) > 0 ? r_[at](I) / diagonal_[at](I) : 0;
-        });
-        real rz_next = dot(r_, ap_);
-        if (bodies_) {
-            bodies_->walk(alpha);
-            rz_next += bodies_->precondition();
-        }
-        const real beta = rz_next / rz;
-        for_each_unknown([&](int a, const Index<D>& I) {
-            const auto at = static_cast<std::size_t>(a);
-            p_[at](I) = ap_[at](I) + beta * p_[at](I);
-        });
-        if (bodies_) bodies_->update_direction(state, beta, p_);
-        rz = rz_next;
+        if (of.bodies_) of.bodies_->update_direction(state, beta, of.p_);
     }
+    real multiply() {
+        refresh_faces<D>(of.p_, of.frame_, 1);
+        of.for_each_unknown([&](int a, const Index<D>& I) {
+            const auto at = static_cast<std::size_t>(a);
+            of.ap_[at](I) = of.mass_[at](I) * of.p_[at](I) + s * of.stress_divergence(of.p_, a, I, 0);
+        });
+        real of_bodies = 0;
+        if (of.bodies_) {
+            of.strain_inside(state, of.p_, s, 0, of.ap_);
+            of_bodies = of.bodies_->multiply(state, s, of.p_, of.ap_);
+        }
+        return of.dot(of.p_, of.ap_) + of_bodies;
+    }
+    void advance(real alpha) {
+        of.for_each_unknown([&](int a, const Index<D>& I) {
+            const auto at = static_cast<std::size_t>(a);
+            of.x_[at](I) += alpha * of.p_[at](I);
+            of.r_[at](I) -= alpha * of.ap_[at](I);
+            of.ap_[at](I) = of.diagonal_[at](I) > 0 ? of.r_[at](I) / of.diagonal_[at](I) : 0;
+        });
+        if (of.bodies_) of.bodies_->advance(alpha);
+    }
+};
+
+/// Continues from x_ with residual r_.
+template <int D>
+void SurfaceViscosity<D>::solve(const MacState<D>& state, real dt_nu, real tolerance) {
+    const real s = theta_ * dt_nu;
+    precondition();
+    System system{*this, state, s};
+    int iterations = 0;
+    linear::StopTest stop(tolerance, max_iterations, iterations);
+    const linear::Outcome outcome = linear::conjugate_gradients(system, stop);
+    iterations_ += iterations;
+    linear::require_converged("velocity", "viscous solve", outcome, stop);
 }
 
 template <int D>
@@ -297,7 +315,7 @@ void SurfaceViscosity<D>::apply(MacState<D>& state, const LevelSet<D>& surface, 
         bodies_->begin(state, dt_nu, state.u.face, r_);
     }
     set_diagonal(theta_ * dt_nu);
-    solve(state, dt_nu, target_);
+    solve(state, dt_nu, tolerance_);
     for_each_unknown([&](int a, const Index<D>& I) { state.u[a](I) += x_[static_cast<std::size_t>(a)](I); });
     if (bodies_) {
         bodies_->carry(state, state.u.face);

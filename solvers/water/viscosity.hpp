@@ -30,7 +30,7 @@ public:
     /// Adds the no-slip bodies of state.no_slip_walls.
     void enforce_bodies(const MacState<D>& state);
     /// Sets the tolerance of the residual relative to the right-hand side; default 1e-9.
-    void set_tolerance(real tolerance) { target_ = tolerance * tolerance; }
+    void set_tolerance(real tolerance) { tolerance_ = tolerance; }
     using Faces = std::array<Grid<real, D>, D>;
     /// Advances u by Δ − dt a over dt. `forces`: dt f, or nullptr. a is computed from the last pressure, state.p (van Kan 1986), as deep in
     /// the liquid as it is known. `at_surface`: a on faces cut by the surface; otherwise it is extrapolated from inside. Throws
@@ -72,7 +72,9 @@ private:
     void add_with_pressure(MacState<D>& state, real sign) const;
     void strain_inside(const MacState<D>& state, const Faces& u, real dt_nu, real fixed, Faces& out) const;
     void set_diagonal(real s);
-    void solve(const MacState<D>& state, real dt_nu, real target);
+    struct System;
+    void precondition();
+    void solve(const MacState<D>& state, real dt_nu, real tolerance);
     real dot(const Faces& p, const Faces& q) const;
     template <class F>
     void for_each_unknown(F&& f) const;
@@ -89,7 +91,7 @@ private:
     real least_theta_, theta_;
     bool solids_stick_;
     int iterations_ = 0;
-    real target_ = 1e-18;                           // squared residual over that of the right-hand side
+    real tolerance_ = 1e-9;                         // of the residual relative to the right-hand side
     std::unique_ptr<BodyRows<D>> bodies_;           // nullptr without no-slip bodies
     Grid<real, D> cell_;                            // liquid fraction of cells
     std::array<Grid<real, D>, edges> edge_;         // ... of the boxes around edges, 0 where no shear acts

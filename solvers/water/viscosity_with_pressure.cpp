@@ -72,7 +72,7 @@ void SurfaceViscosity<D>::apply_again(const MacState<D>& state, const Faces& wit
         r_[at](I) += mass_[at](I) * (with_pressure[at](I) - with_pressure_[at](I));
         with_pressure_[at](I) = with_pressure[at](I);
     });
-    solve(state, dt * state.nu, further * further);
+    solve(state, dt * state.nu, further);
     for_each_unknown([&](int a, const Index<D>& I) { u[static_cast<std::size_t>(a)](I) += x_[static_cast<std::size_t>(a)](I); });
 }
 

@@ -132,6 +132,7 @@ const std::map<std::string, int>& level() {
         {"validation/references", 9}, {"validation/metrics", 9}, {"validation/harness", 10},
         {"validation/page", 11},      {"validation/report", 12}, {"validation/cost", 13},
         {"validation/stability", 13}, {"solvers/matter", 3},     {"solvers/reconstruction", 5},
+        {"solvers/linear", 1},
     };
     return table;
 }

@@ -90,8 +90,8 @@ void publish_studies(const std::vector<json>& studies, const std::filesystem::pa
     for (const auto& entry : std::filesystem::directory_iterator(folder / "json")) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     std::string page =
-        "# What accuracy costs\n\nThis page is written by `weir cost --publish`; nothing in it is typed by hand. "
-        "Computing time is wall-clock time of all steps but the first, the median of the repeats.\n\n";
+        "# Cost of accuracy\n\nThis page is written by `weir cost --publish`; no value is typed by hand. Computing time is wall-clock time "
+        "of all steps but the first, the median of the repeats.\n\n";
     if (std::filesystem::exists(folder / "effects.md")) page += "Cost of each effect of each solver: [effects.md](effects.md).\n\n";
     for (const auto& file : files)
         if (const json study = read_json(file); study.is_object()) page += cost_markdown(study);

@@ -98,10 +98,9 @@ std::string effects_csv(const std::vector<EffectCost>& list) {
 
 std::string effects_markdown(const std::vector<EffectCost>& list, const std::string& machine) {
     std::string s =
-        "# What each effect costs\n\nThis page is written by `weir cost --effects --publish`. A step with the effect and a step without it "
-        "are "
-        "taken in turns, at one time step, with everything else equal; medians of milliseconds and of the pairs' ratio. What a scene does "
-        "not name is not there (tests/effects); an effect \"inside\" a pass is a term of it.\n\n"
+        "# Cost of each effect\n\nThis page is written by `weir cost --effects --publish`. Steps with and without the effect are measured "
+        "alternately with the same time step; the table gives medians of the times and of their ratios. An effect that a scene does not "
+        "name costs nothing (tests/effects); an effect \"inside\" a pass is a term of that pass.\n\n"
         "| solver | dim | cells | effect | ms without | ms with | ratio | +kB | fields | |\n|---|---|---|---|---|---|---|---|---|---|\n";
     for (const EffectCost& c : list)
         s += c.failure.empty() ? fmt::format("| {} | {} | {}^{} | {} | {:.3f} | {:.3f} | {:.2f} ± {:.2f} | {:.1f} | {} | {} |\n", c.solver,

@@ -84,8 +84,8 @@ void publish_limits(const std::vector<json>& studies, const std::filesystem::pat
         if (json study = json::parse(stream, nullptr, false); study.is_object()) all.push_back(std::move(study));
     }
     std::string page =
-        "# Where it breaks\n\nThis page is written by `weir stability --publish`; nothing in it is typed by hand. Each key is "
-        "raised until an invariant breaks; the last value at which none did is the limit.\n\n" +
+        "# Stability limits\n\nThis page is written by `weir stability --publish`; no value is typed by hand. Each key is raised until an "
+        "invariant fails; the last value at which all pass is the limit.\n\n" +
         open_targets_markdown(all) + all_limits_markdown(all);
     for (const json& study : all) page += limits_markdown(study);
     output::write_file(folder / "index.md", page);

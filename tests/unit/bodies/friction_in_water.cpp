@@ -101,7 +101,7 @@ bodies = [ { shape = "sphere", centre = [0.36, 0.34, 0.35], radius = 0.07, densi
         for (const auto& f : s.no_slip_walls->inside) s.u[f.axis](f.face) = 0;  // no liquid
         before = s.u;
         water::SurfaceViscosity<D> viscosity(frame, s, 1, true);
-        viscosity.hold_bodies(s);
+        viscosity.enforce_bodies(s);
         viscosity.set_tolerance(1e-15);
         viscosity.apply(s, all_liquid, closed, dt);
         for (const auto& f : s.no_slip_walls->inside) s.u[f.axis](f.face) = 0;
@@ -164,7 +164,7 @@ TEST("liquid that turns with a body as one does not rub it") {
             r.s.u[a][i] = staggered::NoSlipWalls<2>::along(staggered::moves_at<2>(a, at - body.at), body.velocity);
         }
     water::SurfaceViscosity<2> viscosity(r.frame, r.s, 1, true);
-    viscosity.hold_bodies(r.s);
+    viscosity.enforce_bodies(r.s);
     viscosity.apply(r.s, r.all_liquid, r.closed, 1e-4);
     // The box's own sides stop the liquid's way through them; ten cells away that is a part of (dt nu/h^2 = 0.0016)^10.
     for (const real q : r.s.no_slip_walls->bodies[0].impulse) EXPECT_NEAR(q, 0, 1e-12);
