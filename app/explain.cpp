@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "parallel/communicator.hpp"
+#include "sim/loop.hpp"
 #include "sim/registry.hpp"
 #include "surfaces/reconstruction.hpp"
 
@@ -95,10 +96,11 @@ std::string effects_text(const Simulation& simulation, const std::vector<Pass>& 
 
 /// Milliseconds per step of each pass, and its share.
 std::string passes_text(Simulation& simulation) {
-    for (int i = 0; i < warm_up_steps && !simulation.finished(); ++i) simulation.step();
+    sim::advance(simulation, {.steps = warm_up_steps});
     simulation.solver().passes().reset();
-    int steps = 0;
-    while (steps < measured_steps && !simulation.finished()) simulation.step(), ++steps;
+    const std::int64_t before = simulation.steps();
+    sim::advance(simulation, {.steps = measured_steps});
+    const int steps = static_cast<int>(simulation.steps() - before);
     auto passes = simulation.solver().passes().list();
     double total = 0;
     for (const Pass& pass : passes) total += pass.seconds;

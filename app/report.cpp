@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "validation/page/page.hpp"
 #include "validation/page/readme.hpp"
+#include "validation/report/study_plots.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -15,7 +16,10 @@ void add_report(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand("report", "Write index.html from the published results; nothing is run");
     command->add_option("results", *results, "Folder of published results (default: results)");
     command->add_option("--readme", *readme, "Also write the results between the markers of this file");
-    command->callback([results, readme, &exit_code] {
+    auto plots = std::make_shared<bool>(false);
+    command->add_flag("--plots", *plots, "Also draw the plots of cost and stability again, from the published values");
+    command->callback([results, readme, plots, &exit_code] {
+        if (*plots) validation::draw_published_studies(*results);
         std::printf("%s\n", validation::write_page(*results).c_str());
         if (!readme->empty()) validation::update_readme(*readme, *results);
         exit_code = exit_success;

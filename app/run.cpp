@@ -15,14 +15,13 @@
 #include "parallel/communicator.hpp"
 #include "parallel/mpi/ranks.hpp"
 #include "rigid/remark.hpp"
+#include "sim/frame_options.hpp"
 #include "sim/loop.hpp"
 #include "sim/memory_estimate.hpp"
 #include "sim/probe_files.hpp"
 #include "sim/registry.hpp"
 #include "sim/run_id.hpp"
 #include "sim/shares.hpp"
-#include "sim/solid_cells.hpp"
-#include "surfaces/reconstruction.hpp"
 #include "validation/cost/parallel_estimate.hpp"
 #include "validation/harness/generic_metrics.hpp"
 #include "validation/report/command.hpp"
@@ -50,28 +49,11 @@ struct RunArguments {
     bool quiet = false, explain = false, any_size = false;
 };
 
-output::FrameOptions frame_options(const scene::Scene& scene) {
-    output::FrameOptions options;
-    options.fields = scene.root().texts("output.fields");
-    options.faces = scene.flag("output.faces");
-    options.single_precision = scene.text("output.precision") == "single";
-    const std::string& compression = scene.text("output.compression");
-    options.compression = compression == "none"  ? output::Compression::none
-                          : compression == "lz4" ? output::Compression::lz4
-                                                 : output::Compression::zlib;
-    options.solid = sim::solid_cells(scene);
-    if (const std::shared_ptr<surfaces::Reconstruction> maker = surfaces::reconstruction_of(scene))
-        options.surface = [maker](const FieldSet& fields, real t) -> const SurfaceMesh& { return maker->make_part(fields, t); };
-    return options;
-}
-
-/// The frames of a run; none, with a word about it, where this build has no VTK.
+/// The frames of a run; none, with a message, where this build cannot write their format.
 std::optional<output::Frames> open_frames(const Simulation& simulation, const std::filesystem::path& folder, bool restarted) {
-    const auto options = frame_options(simulation.scene());
-    if (!output::can_write_frames()) {
-        by_first_rank([] {
-            std::fprintf(stderr, "this weir was built without VTK (WEIR_VTK=OFF): probes and run.json are written, frames are not\n");
-        });
+    const auto options = sim::frame_options(simulation.scene());
+    if (const std::string& reason = sim::frames_unavailable(simulation.scene()); !reason.empty()) {
+        by_first_rank([&] { std::fprintf(stderr, "%s: probes and run.json are written, frames are not\n", reason.c_str()); });
         return std::nullopt;
     }
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1, simulation.time()) : output::Frames(folder, options);
@@ -91,7 +73,7 @@ std::string explain_ranks(const Simulation& simulation) {
     for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
     text += simulation.solver().holds_own_planes() ? "; distributed storage: each rank stores and computes its own slab"
                                                    : "; replicated storage: each rank stores the whole grids and computes its own slab";
-    if (!shares.replicated_work.empty()) text += "; replicated work: " + shares.replicated_work;
+    if (!shares.replicated_work.empty()) text += "; replicated work: " + scene::text_of(shares.replicated_work);
     return text + "\n";
 }
 
@@ -160,7 +142,7 @@ public:
         told_ = simulation.warnings().size();
         by_first_rank([&] {
             checkpoint > 0 ? log_.steps().resume(simulation.steps()) : log_.steps().begin();
-            write_log("running");  // where the disk fills later, there is a file that can still say so
+            write_log(output::RunStatus::running);  // where the disk fills later, there is a file that can still say so
             probes_.begin(simulation.probes(), earlier.empty() ? earlier : earlier / "probes");
         });
     }
@@ -185,12 +167,12 @@ public:
             probes_.update(simulation.probes());  // those of the start too
             // not more than a few per cent of the time goes into replacing it
             const auto now = clock::now();
-            if (now - written_ > 20 * write_time_) write_log("running");
+            if (now - written_ > 20 * write_time_) write_log(output::RunStatus::running);
         });
         balance_.on_frame(simulation);
         spent_.writing += seconds_since(start);
     }
-    void end(const Simulation& simulation, const std::string& status) {
+    void end(const Simulation& simulation, output::RunStatus status) {
         progress_.end();
         const auto sent = of_ranks(communicator().traffic());  // before what this takes
         const auto states = of_ranks(state_of(simulation, checkpoint_));
@@ -213,9 +195,9 @@ public:
         progress_.end();
         if (communicator().rank() > 0) return;
         try {
-            write_log("failed: " + why);
+            write_log(output::RunStatus::failed, why);
         } catch (const std::exception&) {
-            log_.overwrite_status("failed: " + why);
+            log_.overwrite_status(output::RunStatus::failed, why);
         }
     }
     std::vector<std::filesystem::path> series() const { return frames_ ? frames_->series() : std::vector<std::filesystem::path>{}; }
@@ -226,11 +208,11 @@ private:
     void tell_ranks(const Simulation& simulation, const std::vector<Traffic>& sent, const std::vector<output::RunLog::RankState>& states) {
         if (!communicator().several()) return;
         const sim::Shares& shares = simulation.shares();
-        using Holds = output::RunLog::Holds;
-        const Holds holds = shares.shared == scene::Shared::by_particles ? Holds::own_particles
-                            : simulation.solver().holds_own_planes()     ? Holds::own_planes
-                                                                         : Holds::whole_grids;
-        log_.set_ranks(communicator().ranks(), shares.cut, holds, shares.replicated_work, sent, states);
+        using Storage = output::RunLog::Storage;
+        const Storage storage = shares.shared == scene::Shared::by_particles ? Storage::particles
+                                : simulation.solver().holds_own_planes()     ? Storage::planes
+                                                                             : Storage::replicated;
+        log_.set_ranks({communicator().ranks(), shares.cut, storage, shares.replicated_work, sent, states});
     }
     void tell_step(const Simulation& simulation, const StepReport& report, double seconds) {
         log_.steps().add(simulation.steps(), simulation.time(), report, simulation.solver().passes(), seconds);
@@ -241,12 +223,12 @@ private:
             std::fprintf(stderr, "%s\n", simulation.warnings()[told_].c_str());
         }
     }
-    void write_log(const std::string& status) {
+    void write_log(output::RunStatus status, const std::string& failure = {}) {
         const auto start = clock::now();
         std::vector<std::string> names;
         for (const auto& path : series()) names.push_back(path.filename().string());
         log_.set_series(names);
-        log_.set_status(status);
+        log_.set_status(status, failure);
         log_.write();
         written_ = clock::now();
         write_time_ = written_ - start;
@@ -293,11 +275,10 @@ std::optional<Measured> measured_of(const RunArguments& arguments, Simulation& s
 }
 
 /// What was written, and how to see it.
-void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder) {
+void tell_results(const std::vector<std::filesystem::path>& series, const std::filesystem::path& folder, const scene::Scene& scene) {
     for (const auto& path : series) std::printf("%s\n", path.string().c_str());
-    if (!series.empty())
-        std::printf("view it: weir view %s (a window), weir picture %s (a PNG), or open the .pvd in ParaView\n", folder.c_str(),
-                    folder.c_str());
+    const auto viewers = output::frame_format(scene.text("output.format")).viewers;
+    if (!series.empty() && viewers) std::printf("view it: %s\n", viewers(folder.string()).c_str());
 }
 
 /// A checkpoint at the end of its scene: there is nothing to continue.
@@ -326,7 +307,7 @@ int simulate(const RunArguments& arguments) {
     }
     communicator().hold_whole(std::any_of(arguments.measure.begin(), arguments.measure.end(), validation::looks_at_whole_fields));
     if (!arguments.explain)
-        sim::require_memory(scene, sim::registry(), output::can_write_frames() ? sim::Use::run_with_frames : sim::Use::run,
+        sim::require_memory(scene, sim::registry(), sim::frames_unavailable(scene).empty() ? sim::Use::run_with_frames : sim::Use::run,
                             memory_for_all(scene));
     Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
@@ -346,10 +327,6 @@ int simulate(const RunArguments& arguments) {
     if (restarted > 0 && simulation.finished()) return tell_finished(simulation);
     const std::string continued = checkpoint ? sim::run_id_of(*checkpoint) : "";
     checkpoint.reset();  // the next one takes its place, and it its room on the disk
-    {
-        const auto parts = simulation.solver().distributed_view();
-        output::check(frame_options(simulation.scene()), simulation.fields());
-    }
     const std::filesystem::path folder = output_folder(arguments, simulation.scene());
     const std::unique_ptr<output::FolderLock> lock = lock_folder(folder);
     const std::string space = check_space(simulation, folder, arguments.any_size);
@@ -371,15 +348,14 @@ int simulate(const RunArguments& arguments) {
     sim::Ending ending;
     try {
         ending = sim::run(simulation, recorder, options);
-        recorder.end(simulation,
-                     ending == sim::Ending::finished ? "finished" : "interrupted at step " + std::to_string(simulation.steps()));
+        recorder.end(simulation, ending == sim::Ending::finished ? output::RunStatus::finished : output::RunStatus::interrupted);
     } catch (const std::exception& failure) {
         recorder.fail(failure.what());
         throw;
     }
     if (simulation.steady())
         std::fprintf(stderr, "steady at t = %.6g s: all velocities change more slowly than time.stop_when_steady\n", simulation.time());
-    if (!arguments.quiet) tell_results(recorder.series(), folder);
+    if (!arguments.quiet) tell_results(recorder.series(), folder, simulation.scene());
     const bool finished = ending == sim::Ending::finished;
     if (finished && measured) std::fputs(measured->text().c_str(), stdout);
     if (finished) return exit_success;
@@ -392,7 +368,7 @@ int simulate(const RunArguments& arguments) {
 
 void add_run(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<RunArguments>();
-    CLI::App* run = app.add_subcommand("run", "Simulate a scene: frames (.pvd), probes (.csv) and run.json");
+    CLI::App* run = app.add_subcommand("run", "Simulate a scene: frames, probes (.csv) and run.json");
     run->add_option("scene", arguments->scene, "A scene file, a folder with a scene.toml, or the name of a case (weir list cases)");
     run->add_option("--out", arguments->out, "Output folder (default: out/<name of the scene>)");
     run->add_option("--set", arguments->set, "Override a key: --set grid.cells=[64,64]; may be repeated")

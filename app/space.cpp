@@ -1,7 +1,7 @@
 #include "app/space.hpp"
 
 #include "core/error.hpp"
-#include "output/frames.hpp"
+#include "sim/frame_options.hpp"
 #include "sim/memory_estimate.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ double room_in(const std::filesystem::path& folder) {
 
 std::string check_space(const Simulation& simulation, const std::filesystem::path& folder, bool any_size) {
     const scene::Scene& scene = simulation.scene();
-    if (!output::can_write_frames()) return "";
+    if (!sim::frames_unavailable(scene).empty()) return "";
     const auto parts = simulation.solver().distributed_view();
     const auto output = sim::estimate_output(scene, simulation.fields());
     const double room = room_in(folder), to_come = output.frames - static_cast<double>(simulation.frame());

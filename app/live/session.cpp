@@ -5,6 +5,7 @@
 #include "output/atomic_file.hpp"
 #include "rigid/bodies.hpp"
 #include "scene/names.hpp"
+#include "sim/loop.hpp"
 #include "sim/registry.hpp"
 
 #include <fmt/format.h>
@@ -122,7 +123,7 @@ std::filesystem::path Session::finish() {
     brush({});  // it lets go
     for (const auto& end : ending()) simulation_->set_at(end.time, end.what);
     try {
-        while (!simulation_->finished()) simulation_->step();
+        sim::advance(*simulation_);
     } catch (const NumericalFailure&) {
         // the scene fails there as the session did
     }

@@ -23,6 +23,7 @@ public:
     const scene::Scene& scene() const { return scene_; }
     const std::filesystem::path& folder() const { return folder_; }
     bool has_brush() const { return simulation_->solver().brush() != nullptr; }
+    /// One step: the window decides after each whether another follows, so it has no use for sim::advance.
     StepReport step() { return simulation_->step(); }
     /// From the next step on; its time is now. What the solver does not have is ignored. A brush that grabs a body grabs the
     /// nearest, and keeps that until it lets go.

@@ -121,7 +121,7 @@ Series::Series(std::filesystem::path folder) : folder_(std::move(folder)), times
 
 Frame Series::read(std::size_t number) const {
     Frame frame;
-    for (const auto& name : output::series_in(folder_)) {
+    for (const auto& name : output::series_in(folder_, output::pvd_index())) {
         const auto entries = output::read_series(folder_ / name);
         if (number >= entries.size()) throw BadInput((folder_ / name).string() + " has only " + std::to_string(entries.size()) + " frames");
         const auto file = folder_ / entries[number].file;

@@ -3,10 +3,12 @@
 
 #include "app/picture/draw.hpp"
 #include "core/parallel.hpp"
+#include "core/step_quantities.hpp"
 #include "output/read_frame.hpp"
+#include "sim/frame_options.hpp"
+#include "sim/loop.hpp"
 #include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
-#include "sim/solid_cells.hpp"
 #include "validation/report/command.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +16,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <iterator>
 
@@ -52,14 +53,10 @@ StatePtr from_text(const std::string& text, const std::string& name, const Chang
 StepReport step(const StatePtr& state, real t, std::int64_t count) {
     const Change change(state);
     const py::gil_scoped_release release;
-    StepReport report;
-    for (std::int64_t i = 0; i < count && (i == 0 || !state->simulation.reached(t)); ++i) {
-        const auto before = std::chrono::steady_clock::now();
-        report = state->simulation.step_until(t);
-        if (!state->measured) continue;
-        state->measured->on_step(report, std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
-    }
-    return report;
+    return sim::advance(state->simulation, {.until = t, .steps = count, .past_end = true}, [&](const StepReport& report, double seconds) {
+        if (state->measured) state->measured->on_step(report, seconds);
+        return true;
+    });
 }
 
 const char* word(Where where) { return where == Where::cell ? "cell" : where == Where::face ? "face" : "particle"; }
@@ -77,9 +74,12 @@ py::dict integrals(const StatePtr& state) {
 }
 
 py::dict probe(const StatePtr& state, const std::string& name) {
-    const auto& series = state->simulation.probes();
-    const auto at = std::find_if(series.begin(), series.end(), [&](const ProbeSeries& p) { return p.name == name; });
-    if (at == series.end()) throw py::key_error("the scene has no probe \"" + name + "\"");
+    const ProbeSeries* at = nullptr;
+    try {
+        at = &state->simulation.probe_series(name);
+    } catch (const BadInput& missing) {
+        throw py::key_error(missing.what());
+    }
     const std::size_t rows = at->times.size(), columns = at->columns.size();
     py::array_t<real> times(static_cast<py::ssize_t>(rows)), values({rows, columns}), positions({at->positions.size(), std::size_t{3}});
     for (std::size_t i = 0; i < rows; ++i) {
@@ -163,11 +163,7 @@ void restore(const StatePtr& state, const std::filesystem::path& file) {
 
 /// A frame as `weir run` writes it; the series begins with the first one.
 std::vector<std::filesystem::path> write_frame(const StatePtr& state, const std::filesystem::path& folder) {
-    if (!state->frames) {
-        output::FrameOptions options;
-        options.solid = sim::solid_cells(state->simulation.scene());
-        state->frames.emplace(folder, options);
-    }
+    if (!state->frames) state->frames.emplace(folder, sim::frame_options(state->simulation.scene()));
     state->frames->write(state->shown(), state->simulation.time());
     return state->frames->series();
 }
@@ -200,20 +196,20 @@ auto of_simulation(F get) {
 }  // namespace
 
 void add_simulation(py::module_& module) {
-    py::class_<StepReport>(module, "StepReport", "Report of one step; nan where the solver does not provide the quantity.")
-        .def_readonly("dt", &StepReport::dt, "[s]")
-        .def_readonly("cfl", &StepReport::cfl)
-        .def_readonly("max_divergence", &StepReport::max_divergence, "[1/s]")
-        .def_readonly("iterations", &StepReport::iterations, "of the pressure, or of constraints")
-        .def_readonly("residual_before", &StepReport::residual_before)
-        .def_readonly("residual_after", &StepReport::residual_after)
-        .def_readonly("residual_max", &StepReport::residual_max)
-        .def_readonly("density_error", &StepReport::density_error, "mean compression of particles")
-        .def_readonly("max_density_error", &StepReport::max_density_error)
-        .def_readonly("viscous_iterations", &StepReport::viscous_iterations, "of friction with a free surface")
-        .def("__repr__", [](const StepReport& r) {
-            return fmt::format("StepReport(dt={:.6g}, cfl={:.3g}, iterations={})", r.dt, r.cfl, r.iterations);
-        });
+    py::class_<StepReport> report(module, "StepReport", "Report of one step; nan where the solver does not provide the quantity.");
+    py::list quantities;
+    for (const StepQuantity& q : step_quantities) {
+        const auto get = [&q](const StepReport& r) -> py::object {
+            if (q.is_count()) return py::int_(static_cast<std::int64_t>(q.value(r)));
+            return py::float_(q.value(r));
+        };
+        report.def_property_readonly(q.name, get, fmt::format("[{}]", *q.unit == '\0' ? "1" : q.unit).c_str());
+        quantities.append(py::make_tuple(q.name, q.is_count()));
+    }
+    module.attr("step_quantities") = quantities;
+    report.def("__repr__", [](const StepReport& r) {
+        return fmt::format("StepReport(dt={:.6g}, cfl={:.3g}, iterations={})", r.dt, r.cfl, r.iterations);
+    });
 
     py::class_<State, StatePtr>(module, "Core")
         .def_static("from_file", from_file)

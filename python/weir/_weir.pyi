@@ -15,6 +15,8 @@ class NumericalFailure(ArithmeticError):
     step: int
     time: float
 
+step_quantities: list[tuple[str, bool]]
+
 class StepReport:
     dt: float
     cfl: float
@@ -26,6 +28,7 @@ class StepReport:
     density_error: float
     max_density_error: float
     viscous_iterations: int
+    viscous_coupling_iterations: int
 
 class Core:
     time: float

@@ -12,9 +12,8 @@ from . import _weir, scene as _scene
 from ._weir import StepReport
 from .fields import Edit, Field
 
-_reported = ("dt", "cfl", "max_divergence", "iterations", "residual_before", "residual_after", "residual_max", "density_error",
-             "max_density_error", "viscous_iterations")
-_report_dtype = np.dtype([("step", np.int64), ("time", float)] + [(name, np.int64 if name.endswith("iterations") else float) for name in _reported])
+_reported = tuple(name for name, is_count in _weir.step_quantities)
+_report_dtype = np.dtype([("step", np.int64), ("time", float)] + [(name, np.int64 if is_count else float) for name, is_count in _weir.step_quantities])
 
 
 @dataclass(frozen=True)
@@ -240,7 +239,8 @@ class Simulation:
         self._core.restore(os.fspath(file))
 
     def write_frame(self, folder: "str | os.PathLike") -> list:
-        """Adds a frame to the VTK series in a folder, begun anew by the first; the .pvd files."""
+        """Adds a frame in the scene's format, fields, precision and compression (its `output` table) to the series in a folder. The first
+        frame begins new series. Returns their index files (grid.pvd, ...)."""
         return self._core.write_frame(os.fspath(folder))
 
     def picture(self, field: str = "", size: int = 900) -> bytes:

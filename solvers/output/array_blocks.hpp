@@ -2,7 +2,7 @@
 // in whose part it starts, which receives the rest of its last block from the following ranks.
 #pragma once
 #include "output/data_array.hpp"
-#include "output/frames.hpp"
+#include "output/frame_format.hpp"
 
 #include <cstdint>
 #include <string>

@@ -11,11 +11,11 @@ namespace weir::output {
 
 std::vector<real> frame_times(const std::filesystem::path& folder) {
     std::vector<real> times;
-    for (const auto& name : series_in(folder)) {
+    for (const auto& name : series_in(folder, pvd_index())) {
         times.clear();
         for (const auto& entry : read_series(folder / name)) times.push_back(entry.time);
     }
-    if (times.empty()) throw BadInput(folder.string() + " contains no series of frames");
+    if (times.empty()) throw BadInput(folder.string() + " contains no series of VTK frames (.pvd), which output.format = \"vtk\" writes");
     return times;
 }
 
@@ -69,7 +69,7 @@ void read_particles(const std::filesystem::path& file, std::map<std::string, Com
 
 FrameData read_frame(const std::filesystem::path& folder, std::size_t frame, int dim) {
     FrameData data;
-    for (const auto& name : series_in(folder)) {
+    for (const auto& name : series_in(folder, pvd_index())) {
         const auto entries = read_series(folder / name);
         if (frame >= entries.size()) throw BadInput((folder / name).string() + " has only " + std::to_string(entries.size()) + " frames");
         const auto file = folder / entries[frame].file;

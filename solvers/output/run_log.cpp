@@ -4,6 +4,7 @@
 #include "output/machine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
@@ -35,6 +36,14 @@ json machine_json(const Machine& machine) {
             {"build", machine.build}};
 }
 
+/// "finished", or "failed" and the next key, "failure", with the message.
+std::string status_text(RunStatus status, const std::string& failure) {
+    constexpr std::array names{"running", "finished", "interrupted", "failed"};
+    std::string text = json(names[static_cast<std::size_t>(status)]).dump();
+    if (status == RunStatus::failed) text += ",\n \"failure\": " + json(failure).dump(-1, ' ', true, replace_bad_text);
+    return text;
+}
+
 /// Omits quantities that the solver does not have (NaN).
 void put(json& to, const char* key, real value) {
     if (std::isfinite(value)) to[key] = value;
@@ -54,18 +63,18 @@ RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene, const std:
     head_.erase(head_.rfind('\n'));  // without the closing brace: more keys follow
 }
 
-void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string& replicated_work, const std::vector<Traffic>& sent,
-                       const std::vector<RankState>& states) {
-    json ranks = {{"count", count}, {"cut", cut.at}, {"storage", "every rank stores whole grids"}};
-    if (holds == Holds::own_planes) ranks["storage"] = "every rank stores its slab and ghost planes";
-    if (holds == Holds::own_particles)
-        ranks["cut"] = "equal numbers of particles", ranks["storage"] = "every rank stores its own and ghost particles";
-    if (!replicated_work.empty()) ranks["every_rank_does"] = replicated_work;
-    for (const Traffic& rank : sent) {
+void RunLog::set_ranks(const Ranks& of) {
+    const bool by_particles = of.storage == Storage::particles;
+    json ranks = {{"count", of.count}, {"partition", by_particles ? "particles" : of.cut.empty() ? "none" : "planes"}};
+    if (!by_particles) ranks["cut"] = of.cut.at;
+    ranks["storage"] = by_particles ? "particles" : of.storage == Storage::planes ? "planes" : "replicated";
+    ranks["replicated_work"] = json::array();
+    for (const scene::ReplicatedWork work : of.replicated_work) ranks["replicated_work"].push_back(scene::name_of(work));
+    for (const Traffic& rank : of.sent) {
         ranks["messages"].push_back(rank.messages);
         ranks["bytes"].push_back(rank.bytes);
     }
-    for (const RankState& rank : states) {
+    for (const RankState& rank : of.states) {
         ranks["solver_bytes"].push_back(rank.solver);
         ranks["resident_bytes"].push_back(rank.resident);
         ranks["peak_bytes"].push_back(rank.peak);
@@ -75,8 +84,8 @@ void RunLog::set_ranks(int count, const Cut& cut, Holds holds, const std::string
     ranks_ = ranks.dump();
 }
 
-bool RunLog::overwrite_status(const std::string& status) const {
-    const std::string text = json(status.substr(0, std::min(status.find('\n'), status_room / 2))).dump(-1, ' ', true, replace_bad_text);
+bool RunLog::overwrite_status(RunStatus status, const std::string& failure) const {
+    const std::string text = status_text(status, failure.substr(0, std::min(failure.find('\n'), status_room / 2)));
     if (text.size() > status_room) return false;
     std::fstream file(file_, std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(static_cast<std::streamoff>(head_.size() + status_key.size()));
@@ -85,7 +94,7 @@ bool RunLog::overwrite_status(const std::string& status) const {
 }
 
 void RunLog::write() const {
-    std::string status = json(status_).dump();
+    std::string status = status_text(status_, failure_);
     status.resize(std::max(status.size(), status_room), ' ');
     std::string text =
         head_ + status_key + status + ",\n \"series\": " + json(series_).dump() + ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);

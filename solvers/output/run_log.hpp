@@ -2,6 +2,7 @@
 #pragma once
 #include "output/step_log.hpp"
 #include "parallel/communicator.hpp"
+#include "scene/replicated_work.hpp"
 #include "scene/scene.hpp"
 
 #include <filesystem>
@@ -11,6 +12,8 @@
 
 namespace weir::output {
 
+enum class RunStatus { running, finished, interrupted, failed };
+
 class RunLog {
 public:
     /// `run`: id of the run whose files the folder contains. Nothing is written before write() or a step.
@@ -18,8 +21,8 @@ public:
 
     /// The rows of the steps, in files beside run.json.
     StepLog& steps() { return steps_; }
-    /// The state of the run: "running", "finished", "interrupted at step 7", "failed: ...".
-    void set_status(const std::string& status) { status_ = status; }
+    /// `failure`: the message of a run that failed.
+    void set_status(RunStatus status, const std::string& failure = {}) { status_ = status, failure_ = failure; }
     void set_series(std::vector<std::string> files) { series_ = std::move(files); }
     /// Warnings during the run (Simulation::warnings).
     void set_warnings(std::vector<std::string> warnings) { warnings_ = std::move(warnings); }
@@ -34,22 +37,31 @@ public:
         std::size_t solver = 0, resident = 0, peak = 0, checkpoint = 0;
         double busy_seconds = 0;
     };
-    enum class Holds { whole_grids, own_planes, own_particles };
-    /// The partition among the ranks of the run, the storage, the replicated work (empty: none), and at the end each rank's traffic and
-    /// memory; only called with several ranks.
-    void set_ranks(int count, const Cut& cut, Holds holds, const std::string& replicated_work, const std::vector<Traffic>& sent,
-                   const std::vector<RankState>& states);
+    /// Storage per rank: whole grids; its planes and ghost planes; its particles and ghost particles.
+    enum class Storage { replicated, planes, particles };
+    /// The partition of a run among its ranks, and at the end each rank's traffic and memory.
+    struct Ranks {
+        int count = 1;
+        Cut cut{};
+        Storage storage = Storage::replicated;
+        scene::ReplicatedWorks replicated_work{};
+        std::vector<Traffic> sent{};
+        std::vector<RankState> states{};
+    };
+    /// Only called with several ranks.
+    void set_ranks(const Ranks& ranks);
     /// Replaces the file. Throws OutputError.
     void write() const;
-    /// Overwrites the status in the existing file, which needs no additional space and so works on a full disk. Only its first line, cut to
-    /// the reserved length. Returns false on failure.
-    bool overwrite_status(const std::string& status) const;
+    /// Overwrites the status in the existing file, which needs no additional space and so works on a full disk. Only the first line of
+    /// the message, cut to the reserved length. Returns false on failure.
+    bool overwrite_status(RunStatus status, const std::string& failure) const;
 
 private:
     std::filesystem::path file_;
     std::string head_;  // scene and machine: constant
     StepLog steps_;
-    std::string status_ = "running";
+    RunStatus status_ = RunStatus::running;
+    std::string failure_;
     std::vector<std::string> series_;
     std::vector<std::string> warnings_;
     std::size_t solver_bytes_ = 0;

@@ -2,7 +2,6 @@
 
 #include "core/error.hpp"
 #include "core/words.hpp"
-#include "output/atomic_file.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -12,12 +11,6 @@
 namespace weir::output {
 
 namespace {
-
-/// The shortest text that reads back as the same double.
-std::string exact(real value) {
-    char text[40];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 /// The value of `name="..."` in a tag.
 std::string attribute(std::string_view tag, const std::string& name) {
@@ -33,7 +26,7 @@ std::string series_text(const std::vector<SeriesEntry>& entries) {
     std::string text =
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
     for (const auto& entry : entries)
-        text += "    <DataSet timestep=\"" + exact(entry.time) + "\" group=\"\" part=\"0\" file=\"" + entry.file + "\"/>\n";
+        text += "    <DataSet timestep=\"" + exact_text(entry.time) + "\" group=\"\" part=\"0\" file=\"" + entry.file + "\"/>\n";
     return text + "  </Collection>\n</VTKFile>\n";
 }
 
@@ -55,39 +48,6 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& pvd) {
     return entries;
 }
 
-std::vector<std::filesystem::path> series_in(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> names;
-    std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-        if (entry.path().extension() == ".pvd" && is_ours(entry.path())) names.push_back(entry.path().filename());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
-std::vector<SeriesEntry> truncate_series(const std::filesystem::path& pvd, std::int64_t kept) {
-    auto entries = read_series(pvd);
-    const auto stay = std::min(entries.size(), static_cast<std::size_t>(kept));
-    const std::vector<SeriesEntry> gone(entries.begin() + static_cast<std::ptrdiff_t>(stay), entries.end());
-    entries.resize(stay);
-    std::error_code ignored;
-    if (entries.empty()) {
-        std::filesystem::remove(pvd, ignored);
-    } else if (!gone.empty()) {
-        write_file(pvd, series_text(entries));  // the list first, so that it never names a removed file
-    }
-    for (const auto& entry : gone) std::filesystem::remove(pvd.parent_path() / entry.file, ignored);
-    return entries;
-}
-
-bool is_ours(const std::filesystem::path& pvd) {
-    try {
-        const auto entries = read_series(pvd);
-        return std::all_of(entries.begin(), entries.end(), [](const SeriesEntry& entry) {
-            return entry.file.starts_with(frame_folder + std::string("/")) && entry.file.find("..") == std::string::npos;
-        });
-    } catch (const BadInput&) {
-        return false;
-    }
-}
+SeriesIndex pvd_index() { return {".pvd", series_text, read_series}; }
 
 }  // namespace weir::output

@@ -1,5 +1,7 @@
 #include "output/step_log.hpp"
 
+#include "core/step_quantities.hpp"
+
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
@@ -17,12 +19,18 @@ json numbers(const ColumnSummary& c) { return {{"min", c.min}, {"mean", c.sum / 
 
 std::string pass_of(const ColumnSummary& column) { return column.name.substr(0, column.name.size() - unit.size()); }
 
+/// "dt [s]", "cfl", ...: the time, and every quantity of a report.
+std::vector<std::string> columns() {
+    std::vector<std::string> names{"t [s]"};
+    for (const StepQuantity& q : step_quantities)
+        names.push_back(q.name + (*q.unit == '\0' ? std::string() : " [" + std::string(q.unit) + ']'));
+    return names;
+}
+
 }  // namespace
 
 StepLog::StepLog(const std::filesystem::path& folder)
-    : steps_(folder / steps_file, {"t [s]", "dt [s]", "cfl", "max_divergence [1/s]", "density_error", "max_density_error", "iterations",
-                                   "viscous_iterations", "viscous_turns", "residual_before", "residual_after", "residual_max"}),
-      timings_(folder / timings_file, {whole_step + unit}) {}
+    : steps_(folder / steps_file, columns()), timings_(folder / timings_file, {whole_step + unit}) {}
 
 void StepLog::begin() {
     steps_.begin();
@@ -47,19 +55,11 @@ std::size_t StepLog::place_of(std::size_t at, const std::string& pass) {
 }
 
 void StepLog::add(std::int64_t step, real t, const StepReport& report, const Passes& passes, double seconds) {
-    const auto some = [](int count) { return count > 0 ? static_cast<real>(count) : not_applicable; };
-    row_ = {t,
-            report.dt,
-            report.cfl,
-            report.max_divergence,
-            report.density_error,
-            report.max_density_error,
-            static_cast<real>(report.iterations),
-            some(report.viscous_iterations),
-            some(report.viscous_coupling_iterations),
-            report.residual_before,
-            report.residual_after,
-            report.residual_max};
+    row_ = {t};
+    for (const StepQuantity& q : step_quantities) {
+        const real value = q.value(report);
+        row_.push_back(q.kind == StepQuantity::Kind::count_if_any && value == 0 ? not_applicable : value);
+    }
     steps_.add(step, row_);
 
     row_.assign(passes_.size() + 1, not_applicable);
@@ -76,7 +76,7 @@ void StepLog::add(std::int64_t step, real t, const StepReport& report, const Pas
 }
 
 std::string StepLog::summary() const {
-    json j = {{"count", steps_.count()}, {"files", {steps_file, timings_file}}};
+    json j = {{"count", steps_.count()}, {"last", steps_.last_step()}, {"files", {steps_file, timings_file}}};
     for (const auto& column : steps_.columns())
         if (column.count > 0) j["columns"][column.name] = numbers(column);
     for (const auto& column : timings_.columns())

@@ -2,7 +2,7 @@
 // encodes the blocks of an array that start in its part, and no rank stores more than its part of one array.
 #pragma once
 #include "output/data_array.hpp"
-#include "output/frames.hpp"
+#include "output/frame_format.hpp"
 
 #include <filesystem>
 #include <string>

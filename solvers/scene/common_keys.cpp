@@ -1,4 +1,5 @@
 // Schema of the keys common to all scenes. Units are SI. Nothing is enabled by default.
+#include "scene/frame_formats.hpp"
 #include "scene/schema.hpp"
 
 namespace weir::scene {
@@ -317,11 +318,16 @@ Key output() {
                       .min_open = true},
                      {.name = "at",
                       .type = Type::choice,
-                      .doc = "step: a frame is the state after the first step that reaches its time, and the series (.pvd) has that step's "
-                             "time; the solution does not depend on `every`. exact: steps are shortened so that frames have exactly the "
+                      .doc = "step: a frame is the state after the first step that reaches its time, and the series has that step's time; "
+                             "the solution does not depend on `every`. exact: steps are shortened so that frames have exactly the "
                              "times k every; the solution then depends on `every`.",
                       .fallback = std::string("step"),
                       .choices = {"step", "exact"}},
+                     {.name = "format",
+                      .type = Type::choice,
+                      .doc = "File format of frames. `weir view`, `weir picture` and `weir movie` read vtk (.vti, .vtp and a .pvd series).",
+                      .fallback = frame_formats().front(),
+                      .choices = frame_formats()},
                      {.name = "fields",
                       .type = Type::texts,
                       .doc = "Fields to write; all fields of the solver if empty.",

@@ -78,7 +78,8 @@ void list_keys(const std::vector<Key>& keys, const std::string& schema, std::vec
 
 /// Keys of the run instead of the solver: the frame writers read them after the start.
 bool is_read_by_writers(const std::string& path) {
-    const auto known = {"title", "solver", "dim", "output.fields", "output.faces", "output.precision", "output.compression"};
+    const auto known = {
+        "title", "solver", "dim", "output.format", "output.fields", "output.faces", "output.precision", "output.compression"};
     return std::find(known.begin(), known.end(), path) != known.end() || path.starts_with("output.surface");
 }
 

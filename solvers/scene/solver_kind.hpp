@@ -2,6 +2,7 @@
 // studies) use the registry.
 #pragma once
 #include "core/solver.hpp"
+#include "scene/replicated_work.hpp"
 #include "scene/scene.hpp"
 
 #include <cstdint>
@@ -34,8 +35,8 @@ struct ParallelSupport {
     std::function<void(const Scene&)> check{};
     /// What is distributed over the ranks.
     Shared shared = Shared::by_planes;
-    /// The replicated work of a step of this scene with this partition, in a few words; an empty text, or no function: none.
-    std::function<std::string(const Scene&, const Cut&)> replicated_work{};
+    /// The replicated work of a step of this scene with this partition; an empty list, or no function: none.
+    std::function<ReplicatedWorks(const Scene&, const Cut&)> replicated_work{};
     /// Returns whether a scene with this partition has distributed storage. Empty: all ranks store everything.
     std::function<bool(const Scene&, const Cut&)> distributed_storage{};
     /// Estimate of what a rank sends in such a step. Empty: unknown.

@@ -35,7 +35,7 @@ Key output_with(std::vector<Variant> methods) {
             .type = Type::table,
             .keys = {{.name = "surface",
                       .type = Type::table,
-                      .doc = "Write the liquid's surface as triangles, in 2D as lines, beside the frames (liquid_surface.pvd), with "
+                      .doc = "Write the liquid's surface as triangles, in 2D as lines, beside the frames (series liquid_surface), with "
                              "normals, velocity and thickness of the liquid below. It is closed, also at walls, solids and open sides.",
                       .selector = "method",
                       .variants = std::move(methods)}}};

@@ -79,43 +79,82 @@ void save(Simulation& simulation, const std::filesystem::path& folder, const std
     if (repartition && all_can_read(checkpoint_file(folder))) simulation.repartition(Checkpoint::read(checkpoint_file(folder)));
 }
 
+/// Keeps the last good state and writes checkpoints during a run.
+class Keeper {
+public:
+    Keeper(Simulation& simulation, const LoopOptions& options) : simulation_(simulation), options_(options) {
+        good_.run = options.run;
+        good_.keep(simulation);
+        keep_before_end();
+    }
+    /// Returns whether the run is to stop before its end.
+    bool after_step() {
+        if (!before_end_ && (simulation_.at_frame() || simulation_.steps() % good_state_every == 0)) good_.keep(simulation_);
+        const bool finished = simulation_.finished();
+        const bool requested = options_.checkpoint_every > 0 && (simulation_.steps() % options_.checkpoint_every == 0 || finished);
+        const int stops = options_.stop_requests();
+        const bool stop = !finished && (stops > 1 || (stops == 1 && (simulation_.at_frame() || !simulation_.has_frames())));
+        if (requested && finished && before_end_ && !simulation_.steady()) {  // a later end can then be requested
+            put_ended(good_.state, simulation_.end_time());
+            good_.state.write(checkpoint_file(options_.folder));
+        } else if (requested || stop) {
+            save(simulation_, options_.folder, options_.run, !stop && !finished);
+        }
+        if (!stop) keep_before_end();
+        return stop;
+    }
+    const GoodState& good() const { return good_; }
+
+private:
+    void keep_before_end() {
+        if (options_.checkpoint_every == 0 || before_end_ || simulation_.finished() || !simulation_.shortens_for_end()) return;
+        before_end_ = true;
+        good_.keep(simulation_);
+    }
+
+    Simulation& simulation_;
+    const LoopOptions& options_;
+    GoodState good_;
+    bool before_end_ = false;  // the good state precedes the steps that are shortened for the end
+};
+
 }  // namespace
 
 std::filesystem::path checkpoint_file(const std::filesystem::path& folder) { return folder / "checkpoint.weir"; }
 std::filesystem::path last_good_file(const std::filesystem::path& folder) { return folder / "last_good.weir"; }
 
-Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options) {
+StepReport advance(Simulation& simulation, const StepRange& range, const std::function<bool(const StepReport&, double seconds)>& after) {
     using clock = std::chrono::steady_clock;
-    if (!options.restarted) watcher.on_frame(simulation);
-    GoodState good;
-    good.run = options.run;
-    good.keep(simulation);
-    bool before_end = false;  // the good state precedes the steps that are shortened for the end
-    while (!simulation.finished()) {
+    StepReport report;
+    for (std::int64_t i = 0; i < range.steps && (range.past_end || !simulation.finished()); ++i) {
         const auto start = clock::now();
-        StepReport report;
-        try {
-            if (options.checkpoint_every > 0 && !before_end && simulation.shortens_for_end()) before_end = true, good.keep(simulation);
-            report = simulation.step();
-        } catch (const NumericalFailure& failure) {
-            fail(failure, good, options.folder);
-        }
-        watcher.on_step(simulation, report, std::chrono::duration<double>(clock::now() - start).count());
-        if (simulation.at_frame()) watcher.on_frame(simulation);
-        if (!before_end && (simulation.at_frame() || simulation.steps() % good_state_every == 0)) good.keep(simulation);
-        const bool finished = simulation.finished();
-        const bool requested = options.checkpoint_every > 0 && (simulation.steps() % options.checkpoint_every == 0 || finished);
-        const int stops = options.stop_requests();
-        const bool stop = !finished && (stops > 1 || (stops == 1 && (simulation.at_frame() || !simulation.has_frames())));
-        if (requested && finished && before_end && !simulation.steady()) {  // a later end can then be requested
-            put_ended(good.state, simulation.end_time());
-            good.state.write(checkpoint_file(options.folder));
-        } else if (requested || stop) {
-            save(simulation, options.folder, options.run, !stop && !finished);
-        }
-        if (stop) return Ending::interrupted;
+        report = simulation.step_until(range.until);
+        if (after && !after(report, std::chrono::duration<double>(clock::now() - start).count())) break;
+        if (simulation.reached(range.until)) break;
     }
-    return Ending::finished;
+    return report;
+}
+
+Ending run(Simulation& simulation, Watcher& watcher, const LoopOptions& options) {
+    if (!options.restarted) watcher.on_frame(simulation);
+    Keeper keeper(simulation, options);
+    Ending ending = Ending::finished;
+    bool stepping = true;
+    const auto after = [&](const StepReport& report, double seconds) {
+        stepping = false;
+        watcher.on_step(simulation, report, seconds);
+        if (simulation.at_frame()) watcher.on_frame(simulation);
+        if (keeper.after_step()) ending = Ending::interrupted;
+        stepping = true;
+        return ending == Ending::finished;
+    };
+    try {
+        advance(simulation, {}, after);
+    } catch (const NumericalFailure& failure) {
+        if (!stepping) throw;  // of the watcher
+        fail(failure, keeper.good(), options.folder);
+    }
+    return ending;
 }
 
 }  // namespace weir::sim

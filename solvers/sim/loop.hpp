@@ -5,9 +5,22 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 
 namespace weir::sim {
+
+/// How far to step.
+struct StepRange {
+    real until = infinity;  // [s]: no step passes it
+    std::int64_t steps = std::numeric_limits<std::int64_t>::max();
+    bool past_end = false;  // continue past the end of the scene
+};
+
+/// The time loop of every program: steps to the end of the range. `after` gets the report and the wall-clock seconds of each step; the loop
+/// ends where it returns false. Returns the report of the last step.
+StepReport advance(Simulation& simulation, const StepRange& range = {},
+                   const std::function<bool(const StepReport&, double seconds)>& after = {});
 
 /// Callbacks of a running simulation.
 class Watcher {

@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "geometry/liquid_fraction.hpp"
 #include "geometry/shape.hpp"
+#include "output/frame_format.hpp"
 #include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
 #include "surfaces/contour.hpp"
@@ -350,7 +351,8 @@ double available_memory() {
 
 OutputEstimate estimate_output(const scene::Scene& scene, const MemoryEstimate& estimate) {
     const auto names = scene.root().texts("output.fields");
-    const double number = scene.text("output.precision") == "single" ? 4 : 8;
+    const double per_value = output::frame_format(scene.text("output.format")).bytes_per_value;
+    const double number = per_value > 0 ? per_value : scene.text("output.precision") == "single" ? 4 : 8;
     const double end = scene::end_after(scene.number("time.end"), scene::changes_of(scene.root()));
     const double every = scene.root().number_or("output.every", infinity);
     OutputEstimate output;
@@ -362,7 +364,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const MemoryEstimate& 
         const double array = number * places * (f.components == 1 ? 1 : 3);  // vectors are written with three components
         output.bytes_of_frame += array;
         output.bytes_of_array = std::max(output.bytes_of_array, array);
-        if (position) output.bytes_of_frame += 16 * places;  // the vertex that VTK draws of it: two numbers of eight bytes
+        if (position) output.bytes_of_frame += 16 * places;  // its connectivity: two numbers of eight bytes
         if (f.where == Where::face && scene.flag("output.faces")) output.bytes_of_frame += number * f.values;
     }
     return output;

@@ -1,9 +1,9 @@
 #include "sim/probe_files.hpp"
 
 #include "core/error.hpp"
+#include "output/series_index.hpp"
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 
@@ -11,17 +11,12 @@ namespace weir::sim {
 
 namespace {
 
-std::string exact(real value) {
-    char text[40];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 /// Positions are comment lines above the header: plots skip them, and no second file is needed.
 std::string head(const ProbeSeries& probe) {
     std::string text = "# probe " + probe.name + ", kind " + probe.kind + '\n';
     for (std::size_t i = 0; i < probe.positions.size(); ++i) {
         text += "# " + probe.columns[i] + " at";
-        for (int a = 0; a < 3; ++a) text += ' ' + exact(probe.positions[i][a]);
+        for (int a = 0; a < 3; ++a) text += ' ' + output::exact_text(probe.positions[i][a]);
         text += " m\n";
     }
     text += "t [s]";
@@ -32,8 +27,8 @@ std::string head(const ProbeSeries& probe) {
 std::string rows(const ProbeSeries& probe, std::size_t from) {
     std::string text;
     for (std::size_t r = from; r < probe.times.size(); ++r) {
-        text += exact(probe.times[r]);
-        for (const real value : probe.values[r]) text += ',' + exact(value);
+        text += output::exact_text(probe.times[r]);
+        for (const real value : probe.values[r]) text += ',' + output::exact_text(value);
         text += '\n';
     }
     return text;

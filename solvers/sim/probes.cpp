@@ -9,17 +9,25 @@
 
 namespace weir {
 
-std::vector<real> ProbeSeries::column(std::string_view wanted) const {
+std::size_t ProbeSeries::column_number(std::string_view wanted) const {
     std::string known;
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (wanted == columns[c] || wanted == std::string_view(columns[c]).substr(0, columns[c].find(" ["))) {
-            std::vector<real> list;
-            for (const auto& row : values) list.push_back(row[c]);
-            return list;
-        }
+        if (wanted == columns[c] || wanted == std::string_view(columns[c]).substr(0, columns[c].find(" ["))) return c;
         known += (c == 0 ? "" : ", ") + columns[c];
     }
     throw BadInput("probe \"" + name + "\" has no column \"" + std::string(wanted) + "\"; it has " + known);
+}
+
+std::vector<real> ProbeSeries::column(std::size_t number) const {
+    std::vector<real> list;
+    for (const auto& row : values) list.push_back(row.at(number));
+    return list;
+}
+
+const ProbeSeries& probe_named(const std::vector<ProbeSeries>& probes, std::string_view name) {
+    for (const ProbeSeries& probe : probes)
+        if (probe.name == name) return probe;
+    throw BadInput("the scene has no probe \"" + std::string(name) + "\"");
 }
 
 }  // namespace weir
@@ -55,11 +63,6 @@ Probes::Probes(const scene::Scene& scene, const Solver& solver) {
         ProbeSeries series;
         series.name = tables[i].text("name");
         series.kind = tables[i].text("kind");
-        const std::string key = "probes[" + std::to_string(i) + "].name";
-        if (series.name.empty() || series.name.find_first_of("/\\") != std::string::npos || series.name[0] == '.')
-            scene.refuse(key, "\"" + series.name + "\" cannot be the name of a file", "a probe is written to probes/<name>.csv");
-        for (const auto& other : series_)
-            if (other.name == series.name) scene.refuse(key, "two probes are called \"" + series.name + "\"");
         kinds_.push_back(make_probe(scene, i, solver));
         kinds_.back()->describe(series);
         series_.push_back(std::move(series));
@@ -138,12 +141,6 @@ std::vector<std::string> Probes::remarks() const {
     for (const auto& kind : kinds_)
         if (std::string remark = kind->remark(); !remark.empty()) list.push_back(std::move(remark));
     return list;
-}
-
-const ProbeSeries& Probes::series(std::string_view name) const {
-    for (const auto& series : series_)
-        if (series.name == name) return series;
-    throw BadInput("the scene has no probe \"" + std::string(name) + "\"");
 }
 
 void Probes::release_rows() {

@@ -16,17 +16,23 @@ namespace weir {
 
 /// Samples of one probe. Row i of `values` belongs to times[i] [s] and has one entry per column.
 struct ProbeSeries {
-    std::string name;
-    std::string kind;                  // point, line, gauge, wall_pressure, integral, body, front
-    std::vector<std::string> columns;  // "velocity_x [m/s]", "height [m]", ...
-    std::vector<Vec<3>> positions;     // of the sample of each column, where it has one (points, lines, gauges) [m]
-    std::vector<real> times;
-    std::vector<std::vector<real>> values;
+    std::string name{};
+    std::string kind{};                  // point, line, gauge, wall_pressure, integral, body, front
+    std::vector<std::string> columns{};  // "velocity_x [m/s]", "height [m]", ...
+    std::vector<Vec<3>> positions{};     // of the sample of each column, where it has one (points, lines, gauges) [m]
+    std::vector<real> times{};
+    std::vector<std::vector<real>> values{};
     std::int64_t released = 0;  // number of first rows that were written to a file and removed from memory
 
-    /// One column over all times, by its name with or without the unit. Throws BadInput naming the available columns.
-    std::vector<real> column(std::string_view wanted) const;
+    /// Number of a column, by its name with or without the unit. Throws BadInput naming the available columns.
+    std::size_t column_number(std::string_view wanted) const;
+    /// That column over all times.
+    std::vector<real> column(std::string_view wanted) const { return column(column_number(wanted)); }
+    std::vector<real> column(std::size_t number) const;
 };
+
+/// The probe of that name. Throws BadInput where there is none.
+const ProbeSeries& probe_named(const std::vector<ProbeSeries>& probes, std::string_view name);
 
 namespace sim {
 
@@ -57,7 +63,6 @@ public:
     /// Remarks about measurements since the last call, one line each.
     std::vector<std::string> remarks() const;
     const std::vector<ProbeSeries>& series() const { return series_; }
-    const ProbeSeries& series(std::string_view name) const;
     /// All rows up to now were written to files: memory and checkpoints keep only their number.
     void release_rows();
     void save(Checkpoint& to, const Solver& solver) const;

@@ -79,7 +79,7 @@ Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& 
     else
         shares.cut = cut_of(planes_of(scene), ranks);
     if (shares.cut.empty())
-        shares.replicated_work = "all of it";
+        shares.replicated_work = {scene::ReplicatedWork::everything};
     else if (kind.parallel.replicated_work)
         shares.replicated_work = kind.parallel.replicated_work(scene, shares.cut);
     return shares;

@@ -12,7 +12,7 @@ namespace weir::sim {
 struct Shares {
     scene::Shared shared = scene::Shared::by_planes;
     Cut cut{};  // of planes; empty for one rank, for shared particles (their partition moves with them), and for replicated work
-    std::string replicated_work{};  // passes of a step with replicated work
+    scene::ReplicatedWorks replicated_work{};
     bool nothing_shared() const { return shared == scene::Shared::by_planes && cut.empty(); }
 };
 Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());

@@ -128,7 +128,7 @@ public:
     void repartition(const Checkpoint& state);
     /// Samples of the scene's probes up to now.
     const std::vector<ProbeSeries>& probes() const { return probes_.series(); }
-    const ProbeSeries& probe_series(std::string_view name) const { return probes_.series(name); }
+    const ProbeSeries& probe_series(std::string_view name) const { return probe_named(probes(), name); }
     /// For runs that write their probes continuously (sim/probe_files.hpp): removes the rows up to now from memory and later checkpoints.
     void release_probe_rows() { probes_.release_rows(); }
 

@@ -91,19 +91,20 @@ scene::SolverKind kind() {
     schema.effects.push_back(free_surface::volume_control());
     schema.effects.push_back(geometry::brush_schema());
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
-    return {schema,
-            mac::make<TallCells>,
-            {{"velocity", "pressure", "level_set", "cell_height"},
-             {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
-            {.check = check_parallel,
-             .replicated_work =
-                 [](const scene::Scene&, const Cut&) {
-                     return "the levels of the pressure of fewer than 20,000 unknowns, extrapolation of the level set into solids";
-                 },
-             .distributed_storage = holds_own_planes,
-             .traffic = traffic_of_step,
-             .partition = cut_of_columns}};
+    return {
+        schema,
+        mac::make<TallCells>,
+        {{"velocity", "pressure", "level_set", "cell_height"},
+         {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
+         "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
+        {.check = check_parallel,
+         .replicated_work =
+             [](const scene::Scene&, const Cut&) {
+                 return scene::ReplicatedWorks{scene::ReplicatedWork::small_pressure_levels, scene::ReplicatedWork::level_set_in_solids};
+             },
+         .distributed_storage = holds_own_planes,
+         .traffic = traffic_of_step,
+         .partition = cut_of_columns}};
 }
 
 }  // namespace weir::tallcell

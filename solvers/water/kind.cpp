@@ -101,7 +101,9 @@ scene::SolverKind kind() {
             {.check = check_parallel,
              .replicated_work =
                  [](const scene::Scene& scene, const Cut& cut) {
-                     return mac::replicated_pressure(scene, cut) + ", extrapolation of the level set into solids";
+                     auto works = mac::replicated_pressure(scene, cut);
+                     works.push_back(scene::ReplicatedWork::level_set_in_solids);
+                     return works;
                  },
              .distributed_storage = mac::holds_own_planes,
              .traffic = traffic_of_step,

@@ -229,8 +229,10 @@ scene::SolverKind kind() {
              {"surface", "water"},
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
             {.check = check_parallel,
-             .replicated_work = [](const scene::Scene& scene,
-                                   const Cut&) { return std::string(scene.dim() == 2 ? "the surface's one row" : ""); },
+             .replicated_work =
+                 [](const scene::Scene& scene, const Cut&) {
+                     return scene.dim() == 2 ? scene::ReplicatedWorks{scene::ReplicatedWork::surface_row} : scene::ReplicatedWorks{};
+                 },
              .distributed_storage = holds_own_planes,
              .traffic = traffic_of_step,
              .partition = [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }}};

@@ -90,10 +90,10 @@ told() { grep -o "\"$2\":\[[0-9,]*\]" "$1/run.json" | tr -d '[]' | cut -d: -f2 |
 at_most() { [ "$1" -le "$2" ] || fail "$3: $1 bytes, and at most $2 are its own"; }
 holds_own() {
     for run; do
-        grep -q '"storage":"every rank stores its slab and ghost planes"' "$run/run.json" || fail "a rank of $run held more than its own planes"
+        grep -q '"storage":"planes"' "$run/run.json" || fail "a rank of $run held more than its own planes"
     done
 }
-holds_whole() { grep -q '"storage":"every rank stores whole grids"' "$1/run.json" || fail "run.json of $1 does not tell that grids are whole"; }
+holds_whole() { grep -q '"storage":"replicated"' "$1/run.json" || fail "run.json of $1 does not tell that grids are whole"; }
 # ends_steady RUN: the last run, and as many steps of this one, which were some
 ends_steady() {
     says "steady at t = "
@@ -196,7 +196,7 @@ case $part in
 particles)
     compare pbf "$every" "$drops"
     compare sph "$every" "$drops" $sph
-    grep -q '"count":2,"cut":"equal numbers of particles"' pbf-2/run.json || fail "run.json does not tell the ranks"
+    grep -q '"count":2,"partition":"particles","storage":"particles"' pbf-2/run.json || fail "run.json does not tell the ranks"
     ;;
 particles_3d)
     compare pbf "$every" "$drops_deep"
@@ -205,7 +205,7 @@ particles_3d)
 water)
     compare flip "$every" "$water" "${frictionless[@]}"
     holds_own flip-2
-    grep -q '"every_rank_does":"the levels of the pressure' flip-2/run.json || fail "run.json does not tell what is not shared"
+    grep -q '"replicated_work":\["small_pressure_levels"' flip-2/run.json || fail "run.json does not tell what is not shared"
     compare sticky "$every" "$water" "${probes[@]}"
     holds_own sticky-2
     compare few "4 2" "$scenes/water.toml"
@@ -289,7 +289,7 @@ heightfield_2d) # one row of columns: replicated work, objects on it too
     for model in shallow_water columns; do
         compare $model "$every" "$line" --set scheme.model=$model
         grep -q '"cut":\[\]' $model-3/run.json || fail "run.json tells of a cut"
-        grep -q '"every_rank_does":"all of it"' $model-3/run.json || fail "run.json does not tell that every rank does all of it"
+        grep -q '"replicated_work":\["everything"\]' $model-3/run.json || fail "run.json does not tell that every rank does all of it"
     done
     compare floats "2 1,3 2" "$line" --set scheme.model=columns --set 'floats=[{size=[0.5,0.2],at=[5.0,0.35]}]'
     in_two_parts 0.2 0.4 "$line"
@@ -298,7 +298,7 @@ waves)
     compare sea "$every" "$sea"
     grep -q '"cut":\[0,16,44\]' sea-2/run.json || fail "run.json does not tell the ranks"
     holds_own sea-2 sea-4
-    ! grep -q every_rank_does sea-2/run.json || fail "run.json tells of what is not shared on a sea"
+    grep -q '"replicated_work":\[\]' sea-2/run.json || fail "run.json tells of what is not shared on a sea"
     compare trains "$every" "$trains"
     grep -q '"cut":\[0,8,22\]' trains-2/run.json || fail "run.json does not tell the ranks of layers"
     holds_own trains-2 trains-4
@@ -313,7 +313,7 @@ waves)
         --set 'probes=[{name="below",kind="point",field="velocity",at=[50.0,-3.0,60.0]},{name="above",kind="point",field="level_set",at=[20.0,1.0,30.0]},
             {name="gauge",kind="gauge",at=[30.0,0.0,70.0]},{name="sums",kind="integral",field="potential_energy"}]'
     holds_own basin-2 basin-4
-    ! grep -q every_rank_does basin-2/run.json || fail "run.json tells of what is not shared in a basin"
+    grep -q '"replicated_work":\[\]' basin-2/run.json || fail "run.json tells of what is not shared in a basin"
     compare sheet "2 1,4 2" "$below" $basin --set grid.cells=[20,1,22]
     compare narrow "3 1" "$below" $basin --set grid.cells=[2,7,22] # fewer columns than ranks
     in_two_parts 0.2 0.6 "$below" $basin
@@ -322,9 +322,9 @@ waves)
         -e 's/-9.81, 0.0/-9.81/; s/-3.0, 60.0/-3.0/; s/heading = 0.4, //' "$below" >row.toml
     compare row "2 2,3 1,4 1" row.toml
     compare row_basin "3 1" row.toml --set 'waves={model="basin"}' --set 'liquid=[{shape="wave",level=0.0,amplitude=0.5,wavelength=160.0}]'
-    grep -q '"every_rank_does":"the surface.s one row"' row_basin-3/run.json || fail "run.json does not tell what is not shared in 2D"
+    grep -q '"replicated_work":\["surface_row"\]' row_basin-3/run.json || fail "run.json does not tell what is not shared in 2D"
     compare surface "3 2" row.toml --set grid.cells=[40,1] --set probes=[]
-    grep -q '"every_rank_does":"all of it"' surface-3/run.json || fail "run.json does not tell that every rank does all of it"
+    grep -q '"replicated_work":\["everything"\]' surface-3/run.json || fail "run.json does not tell that every rank does all of it"
     for scene in "$sea" "$trains"; do
         in_two_parts 0.2 0.6 "$scene"
     done
@@ -332,7 +332,7 @@ waves)
 tallcell)
     compare deep "$every" "$tall_deep"
     holds_own deep-2 deep-4
-    grep -q '"every_rank_does":"the levels of the pressure of fewer than 20,000 unknowns' deep-2/run.json || fail "run.json does not tell what is not shared"
+    grep -q '"replicated_work":\["small_pressure_levels","level_set_in_solids"\]' deep-2/run.json || fail "run.json does not tell what is not shared"
     compare flat "2 1,3 2,4 1" "$tall"
     tall_ring='--set sides={x_min={kind="periodic"},x_max={kind="periodic"},z_min={kind="periodic"},z_max={kind="periodic"}}'
     clear='--set solids=[]' # columns are looked at together where no solid cuts them
@@ -356,7 +356,7 @@ tallcell)
     holds_whole across-3
     compare thin "4 1" "$tall_deep" --set grid.cells=[28,48,9] --set grid.size=[0.56,0.96,0.18]
     compare few "4 1" "$tall_deep" --set grid.cells=[28,48,7] --set grid.size=[0.56,0.96,0.14] # no pair of lines for each
-    grep -q '"every_rank_does":"all of it"' few-4/run.json || fail "run.json does not tell that every rank does all of it"
+    grep -q '"replicated_work":\["everything"\]' few-4/run.json || fail "run.json does not tell that every rank does all of it"
     # two levels of the pressure that are cut, and one with an odd number of lines around
     compare levels "2 1,4 2" "$tall_deep" $clear --set grid.cells=[64,32,64] --set grid.size=[1.28,0.64,1.28] --set scheme.columns=uniform --set time.end=0.03
     compare odd "3 1" "$tall_deep" $tall_ring $clear --set grid.cells=[27,48,25] --set grid.size=[0.54,0.96,0.5]
@@ -757,7 +757,7 @@ petsc) # shares its rows: within the tolerance what multigrid finds in one proce
                 ends 0 over $ranks "$weir" run "$@" --set scheme.poisson.method=petsc_$method --quiet --threads 1 --out $name-$method-$ranks
                 near $name $name-$method-$ranks
             done
-            grep -q '"every_rank_does":"[^"]*the matrix of the pressure[",]' $name-$method-3/run.json || fail "run.json does not tell what is not shared"
+            grep -q '"replicated_work":\["pressure_matrix"' $name-$method-3/run.json || fail "run.json does not tell what is not shared"
         done
         # Blocks of rows that are factored alone know less of each other: so the rows were really shared.
         [ "$(first_iterations $name-icc-3)" -gt "$(first_iterations $name-icc-1)" ] || fail "three blocks took no more iterations than one"

@@ -71,7 +71,7 @@ Traffic told(const scene::Scene& scene, int ranks, int rank, const Run& run, std
                                                         .step = static_cast<std::int64_t>(step) + 1,
                                                         .beside = beside,
                                                         .viscous_iterations = run.iterations(step, "viscous_iterations"),
-                                                        .viscous_coupling_iterations = run.iterations(step, "viscous_turns")});
+                                                        .viscous_coupling_iterations = run.iterations(step, "viscous_coupling_iterations")});
         EXPECT_TRUE(sent.besides.empty()) << sent.besides[0];
         sum.messages += sent.all().messages, sum.bytes += sent.all().bytes;
     }

@@ -26,7 +26,7 @@ const std::vector<std::string> of_the_run{
     "time.dt = 0.001",
     "time.max_dt = 0.001\ntime.guard = \"off\"",
     "changes = [ { time = 0.5, key = \"time.max_dt\", value = 0.1 } ]",
-    "output = { every = 0.5, at = \"exact\", fields = [], faces = true, precision = \"single\", compression = \"none\" }",
+    "output = { every = 0.5, at = \"exact\", format = \"vtk\", fields = [], faces = true, precision = \"single\", compression = \"none\" }",
 };
 const std::string hand =
     "effects.hand = { rate = 10, keyframes = [ { time = 0, kind = \"push\", centre = [0.5, 0.5], radius = 0.1, velocity = [1, 0], speed = "
@@ -346,7 +346,7 @@ std::map<std::string, Said> everything() {
             Lines{of_surfaces[0] + "\ntitle = \"a\"\ngrid.origin = [0, 0, 0]\njitter = 0.1\ntime.dt = 0.5",
                   of_surfaces[0] +
                       "\ntime.max_dt = 0.5\ntime.guard = \"off\"\noutput.every = 0.5\noutput.at = \"exact\"\noutput.fields = []\n" +
-                      "output.faces = true\noutput.precision = \"single\"\noutput.compression = \"none\""})};
+                      "output.format = \"vtk\"\noutput.faces = true\noutput.precision = \"single\"\noutput.compression = \"none\""})};
     return said;
 }
 

@@ -1,6 +1,7 @@
 """Simulations from Python: scenes in, steps, fields, probes; what is refused, and that nothing crashes."""
 import gc
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -219,6 +220,16 @@ def test_pictures_and_frames(tmp_path):
     sim.step()
     names = {os.path.basename(f) for f in sim.write_frame(tmp_path)}
     assert "grid.pvd" in names and (tmp_path / "grid.pvd").exists()
+
+
+def test_frames_follow_the_output_table_of_the_scene(tmp_path):
+    """As `weir run` writes them: only the named fields, in single precision, without compression, and the surface beside them."""
+    scene = changed(output={"fields": ["pressure"], "precision": "single", "compression": "none", "surface": "level_set"})
+    names = {os.path.basename(f) for f in weir.Simulation(scene).write_frame(tmp_path / "python")}
+    assert names == {"grid.pvd", "markers.pvd", "liquid_surface.pvd"}
+    text = (tmp_path / "python" / "frames" / "grid_000000.vti").read_bytes().split(b"<AppendedData")[0].decode()
+    arrays = re.findall(r'<DataArray type="(\w+)" Name="(\w+)"', text)
+    assert [a for a in arrays if a[1] != "TimeValue"] == [("Float32", "pressure")] and "compressor" not in text
 
 
 def test_keys_change_while_it_runs():

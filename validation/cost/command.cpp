@@ -12,6 +12,7 @@
 #include "validation/report/command.hpp"
 #include "validation/report/pins.hpp"
 #include "validation/report/publish.hpp"
+#include "validation/report/study_plots.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -45,7 +46,7 @@ void write_outputs(const StudyResult& result, const json& study, const std::file
     const std::string& name = result.study.name;
     output::write_file(out / (name + ".csv"), cost_csv(result));
     output::write_file(out / (name + ".json"), study.dump(1) + "\n");
-    output::write_file(out / (name + ".svg"), cost_figure(study));
+    draw_cost(study, out / (name + ".svg"));
 }
 
 /// Errors and bytes at ci size: each setting runs once, on one thread, which bytes depend on.

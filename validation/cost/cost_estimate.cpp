@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "sim/loop.hpp"
 #include "sim/simulation.hpp"
 #include "validation/cost/load.hpp"
 
@@ -31,7 +32,6 @@ std::pair<double, bool> count_of(const scene::Scene& scene, const FieldSet& fiel
     return {cells, false};
 }
 
-double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 double median(std::vector<double> list) {
     const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
@@ -117,21 +117,21 @@ Rates measure_rates(const scene::Scene& scene, const std::vector<scene::SolverKi
     r.count = count_of(scene, simulation.fields()).first;
     std::vector<double> seconds;
     double spent = 0, simulated = 0, on_the_wall = 0;
-    for (int i = -untimed_steps; i < most_steps && (i < fewest_steps || (spent < enough_seconds && !simulation.finished()));
-         ++i) {  // past its end where it is one step
-        if (i == 0) simulation.solver().passes().reset();
-        const double start = computing_seconds(), wall = wall_seconds();
-        const StepReport step = simulation.step();
+    sim::advance(simulation, {.steps = untimed_steps, .past_end = true});  // past its end where it is one step
+    simulation.solver().passes().reset();
+    double start = computing_seconds();
+    sim::advance(simulation, {.steps = most_steps, .past_end = true}, [&](const StepReport& step, double wall) {
         const real dt = step.dt;
         const double took = computing_seconds() - start;
-        if (i < 0) continue;
-        on_the_wall += wall_seconds() - wall;
+        on_the_wall += wall;
         seconds.push_back(took);
         r.least_dt = seconds.size() == 1 ? dt : std::min(r.least_dt, dt), r.most_dt = std::max(r.most_dt, dt);
         spent += took, simulated += dt;
         r.iterations += step.iterations, r.viscous_iterations += step.viscous_iterations;
         if (step.cfl > r.most_cfl) r.most_cfl = step.cfl;
-    }
+        start = computing_seconds();
+        return std::ssize(seconds) < fewest_steps || (spent < enough_seconds && !simulation.finished());
+    });
     if (seconds.empty()) throw NumericalFailure("time", "the scene ends before a step can be measured");
     r.ms = 1e3 * median(seconds);
     r.dt = simulated / static_cast<double>(seconds.size());

@@ -207,7 +207,7 @@ std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate
                      !o.own_part ? "the whole grids"
                      : planes    ? "its slab and ghost planes"
                                  : "its own and ghost particles",
-                     o.replicated_work.empty() ? "" : "; replicated work: ", o.replicated_work);
+                     o.replicated_work.empty() ? "" : "; replicated work: ", scene::text_of(o.replicated_work));
     for (std::size_t rank = 0; rank < o.bytes.size(); ++rank) {
         const int r = static_cast<int>(rank);
         if (o.ranks > most_listed && r != 0 && r != o.ranks / 2 && r + 1 != o.ranks) continue;  // those at the ends, and one between

@@ -29,10 +29,10 @@ struct ModelStep {
 
 struct ParallelEstimate {
     int ranks = 1;
-    Cut cut{};                            // empty where particles are shared
-    bool own_part = false;                // each holds its own planes alone
-    bool nothing_shared = false;          // every rank does all of it
-    std::string replicated_work{};        // what every rank does alone
+    Cut cut{};                    // empty where particles are shared
+    bool own_part = false;        // each holds its own planes alone
+    bool nothing_shared = false;  // every rank does all of it
+    scene::ReplicatedWorks replicated_work{};
     std::vector<double> bytes{};          // that each holds
     std::vector<double> surface_bytes{};  // more while output.surface is made
     StepShape shape{};

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "output/machine.hpp"
+#include "sim/loop.hpp"
 #include "sim/simulation.hpp"
 #include "validation/cost/load.hpp"
 #include "validation/harness/variants.hpp"
@@ -44,7 +45,7 @@ double milliseconds(const ReportRow& row, Simulation& simulation) {
     auto& passes = simulation.solver().passes();
     passes.reset();
     const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < steps_a_batch; ++i) simulation.step();
+    sim::advance(simulation, {.steps = steps_a_batch, .past_end = true});
     const double whole = 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / steps_a_batch;
     if (row.passes.empty()) return whole;
     double sum = 0;
@@ -61,7 +62,7 @@ json measure_row(const ReportRow& row, const Solvers& solvers, const Drawn& draw
     const auto schemas = scene::schemas_of(solvers);
     const sim::NoThreadTrials no_trials;
     Simulation simulation(scene_of(row.variant, 0, schemas), solvers);
-    for (int i = 0; i < warm_up_steps; ++i) simulation.step();
+    sim::advance(simulation, {.steps = warm_up_steps, .past_end = true});
     const Work before = work_so_far();
     std::vector<double> ms;
     for (int i = 0; i < batches; ++i) ms.push_back(milliseconds(row, simulation));

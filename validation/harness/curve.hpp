@@ -36,9 +36,15 @@ struct Axis {
     Axis(std::string its_label, bool is_log = false) : label(std::move(its_label)), log(is_log) {}
 };
 
-/// Where differences mean nothing: shaded from the bottom of a diagram up to `below`; 0: nowhere. Of studies only (page/chart.hpp).
+/// Where differences mean nothing: shaded from the bottom of a diagram up to `below`; 0: nowhere.
 struct Shade {
     real below = 0;
+    std::string label{};
+};
+
+/// A line across a diagram at one abscissa: "real time".
+struct Mark {
+    real at = 0;
     std::string label{};
 };
 
@@ -48,6 +54,7 @@ struct Panel {
     Axis x{}, y{};
     std::vector<Curve> curves{};
     Shade shade{};
+    std::vector<Mark> marks{};
 };
 
 }  // namespace weir::validation

@@ -189,8 +189,8 @@ std::string unit_of(std::string_view name, const RunRecord& run) {
     if (n.operation.ends_with("_relative") || n.operation == "drift" || n.operation == "change") return "";
     for (const Integral& i : run.integrals)
         if (i.name == n.subject || i.name == name) return i.unit;
-    if (n.subject == "divergence") return "1/s";
-    if (name == "seconds" || n.subject == "dt") return "s";
+    if (name == "seconds") return "s";
+    if (const StepQuantity* quantity = find_step_quantity(n.subject)) return quantity->unit;
     const FieldView* f = run.fields.find(n.subject);
     return f ? f->unit : "";
 }

@@ -2,11 +2,12 @@
 #pragma once
 #include "core/error.hpp"
 #include "core/solver.hpp"
+#include "core/step_quantities.hpp"
 #include "scene/scene.hpp"
+#include "sim/probes.hpp"
 #include "validation/harness/curve.hpp"
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,22 +29,9 @@ struct Moment {
     std::vector<real> observed{};   // in the order of RunRecord::observers
 };
 
-/// Samples of one probe. Row i of `values` was taken at times[i] [s] and has one entry a column.
-struct ProbeSeries {
-    std::string name{};
-    std::string kind{};                  // point, line, gauge, wall_pressure, integral, front
-    std::vector<std::string> columns{};  // "velocity_x [m/s]", "height [m]", ...
-    std::vector<Vec<3>> positions{};     // of each column's sample where it has one (points, lines, gauges) [m]
-    std::vector<real> times{};
-    std::vector<std::vector<real>> values{};
-};
-
 /// History of one column of a probe.
-inline Curve column(const ProbeSeries& probe, std::size_t c) {
-    Curve curve{.label = probe.name, .x = probe.times};
-    for (const auto& row : probe.values) curve.y.push_back(row.at(c));
-    return curve;
-}
+inline Curve column(const ProbeSeries& probe, std::size_t c) { return {.label = probe.name, .x = probe.times, .y = probe.column(c)}; }
+inline Curve column(const ProbeSeries& probe, std::string_view name) { return column(probe, probe.column_number(name)); }
 
 struct RunRecord {
     std::shared_ptr<const scene::Scene> scene;
@@ -59,19 +47,15 @@ struct RunRecord {
     std::optional<std::string> failure;  // why the run ended early: its numbers must not be used
 
     std::int64_t steps() const { return history.empty() ? 0 : history.back().step; }
-    const ProbeSeries& probe(std::string_view name) const {
-        for (const auto& p : probes)
-            if (p.name == name) return p;
-        throw BadInput("the scene has no probe \"" + std::string(name) + "\"");
-    }
+    const ProbeSeries& probe(std::string_view name) const { return probe_named(probes, name); }
     const FieldView& field(std::string_view name) const {
         if (const FieldView* f = fields.find(name)) return *f;
         throw BadInput("the solver provides no field \"" + std::string(name) + "\"");
     }
     bool has_integral(std::string_view name) const { return index_of(name) < integrals.size(); }
-    /// An integral, an observed metric, a probe ("probe.NAME", its first column, or "probe.NAME.velocity_x"), or a number of the step
-    /// reports (dt, cfl, divergence, iterations, residual, residual_max) against time. Reports have no value at the initial state, so
-    /// their series begins with the first step.
+    /// An integral, an observed metric, a probe ("probe.NAME", its first column, or "probe.NAME.velocity_x"), or a quantity of the step
+    /// reports (core/step_quantities.hpp) against time. Reports have no value at the initial state, so their series begins with the first
+    /// step.
     Curve series(std::string_view name) const;
 
 private:
@@ -87,23 +71,11 @@ private:
 inline Curve RunRecord::probe_column(std::string_view name) const {
     const auto dot = std::min(name.find('.'), name.size());
     const ProbeSeries& p = probe(name.substr(0, dot));
-    const std::string_view wanted = name.substr(std::min(dot + 1, name.size()));
-    for (std::size_t c = 0; c < p.columns.size(); ++c)
-        if (wanted.empty() || p.columns[c].substr(0, p.columns[c].find(' ')) == wanted) return column(p, c);
-    throw BadInput("probe \"" + p.name + "\" has no column \"" + std::string(wanted) + "\"");
+    return dot == name.size() ? column(p, 0) : column(p, name.substr(dot + 1));
 }
 
 inline Curve RunRecord::series(std::string_view name) const {
     if (name.starts_with("probe.")) return probe_column(name.substr(6));
-    static const std::map<std::string, real (*)(const StepReport&), std::less<>> reports = {
-        {"dt", [](const StepReport& r) { return r.dt; }},
-        {"cfl", [](const StepReport& r) { return r.cfl; }},
-        {"divergence", [](const StepReport& r) { return r.max_divergence; }},
-        {"iterations", [](const StepReport& r) { return static_cast<real>(r.iterations); }},
-        {"residual", [](const StepReport& r) { return r.residual_after; }},
-        {"residual_max", [](const StepReport& r) { return r.residual_max; }},
-        {"density_error", [](const StepReport& r) { return r.density_error; }},
-    };
     Curve curve{.label = std::string(name), .x = {}, .y = {}};
     const auto add = [&](const Moment& m, real value) { curve.x.push_back(m.time), curve.y.push_back(value); };
     if (const std::size_t i = index_of(name); i < integrals.size()) {
@@ -115,10 +87,10 @@ inline Curve RunRecord::series(std::string_view name) const {
         for (const auto& m : history) add(m, m.observed.at(i));
         return curve;
     }
-    const auto report = reports.find(name);
-    if (report == reports.end()) throw BadInput("no integral, observed metric or step report is called \"" + std::string(name) + "\"");
+    const StepQuantity* quantity = find_step_quantity(name);
+    if (!quantity) throw BadInput("no integral, observed metric or step report is called \"" + std::string(name) + "\"");
     for (const auto& m : history)
-        if (m.step > 0) add(m, report->second(m.report));
+        if (m.step > 0) add(m, quantity->value(m.report));
     return curve;
 }
 

@@ -1,7 +1,9 @@
-// The loop over one run, and what is kept of it.
+// One run, and what is kept of it.
 #include "validation/harness/runner.hpp"
 
 #include "output/frames.hpp"
+#include "sim/frame_options.hpp"
+#include "sim/loop.hpp"
 #include "sim/simulation.hpp"
 #include "validation/harness/fitting.hpp"
 #include "validation/harness/generic_metrics.hpp"
@@ -9,14 +11,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
 namespace weir::validation {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// The metrics of the variant's claims, each once.
 std::vector<std::string> metrics_of(const Variant& variant) {
@@ -46,9 +45,9 @@ std::optional<Curve> history_of(const RunRecord& record, const std::string& metr
 class FrameWriter {
 public:
     FrameWriter(const std::filesystem::path& folder, const scene::Scene& scene) {
-        if (folder.empty() || !output::can_write_frames()) return;
-        output::FrameOptions options{.fields = {}, .single_precision = true};
-        if (scene.has("output.fields")) options.fields = scene.root().texts("output.fields");
+        if (folder.empty() || !sim::frames_unavailable(scene).empty()) return;
+        output::FrameOptions options = sim::frame_options(scene);
+        options.single_precision = true;  // frames of cases are looked at; metrics read the fields
         frames_.emplace(folder, options);
     }
     void write(const Simulation& simulation, bool at_last = false) {
@@ -118,8 +117,7 @@ void RunWatch::on_step(const StepReport& report, double seconds) {
 
 RunRecord& RunWatch::record() {
     record_.fields = simulation_->fields();
-    record_.probes.clear();
-    for (const auto& p : simulation_->probes()) record_.probes.push_back({p.name, p.kind, p.columns, p.positions, p.times, p.values});
+    record_.probes = simulation_->probes();
     record_.passes = simulation_->solver().passes().list();
     return record_;
 }
@@ -134,17 +132,15 @@ RunRecord run_scene(scene::Scene scene, const RunOptions& options, const Solvers
     double seconds_so_far = 0;
     std::optional<std::string> failed;
     try {
-        const auto cut = [&] { return options.steps && simulation.steps() >= *options.steps; };
-        while (!simulation.finished() && !cut()) {
-            const auto start = Clock::now();
-            const StepReport report = simulation.step();
-            const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        const std::int64_t steps = options.steps.value_or(sim::StepRange{}.steps);
+        sim::advance(simulation, {.steps = steps}, [&](const StepReport& report, double seconds) {
             seconds_so_far += seconds;
             watch.on_step(report, seconds);
-            frames.write(simulation, cut());
+            frames.write(simulation, simulation.steps() == steps);
             if (seconds_so_far > options.time_limit)
                 throw NumericalFailure("time limit", fmt::format("not finished after {:g} s of computing", options.time_limit));
-        }
+            return true;
+        });
     } catch (const NumericalFailure& failure) {
         const auto step = failure.step >= 0 ? failure.step : simulation.steps();
         failed = fmt::format("step {}, t = {:.6g} s: {}", step, failure.step >= 0 ? failure.time : simulation.time(), failure.what());

@@ -11,12 +11,7 @@
 namespace weir::validation {
 namespace {
 
-Curve track(const RunRecord& run, const std::string& name) {
-    const ProbeSeries& probe = run.probe("body");
-    for (std::size_t c = 0; c < probe.columns.size(); ++c)
-        if (probe.columns[c].substr(0, probe.columns[c].find(' ')) == name) return column(probe, c);
-    throw BadInput("the probe \"body\" has no column \"" + name + "\"");
-}
+Curve track(const RunRecord& run, const std::string& name) { return column(run.probe("body"), name); }
 
 /// Mean over the last part of a run.
 real body_late_mean(const Curve& c, real from, const std::function<real(real)>& of) {

@@ -86,12 +86,6 @@ std::string overview(const std::vector<CaseClaims>& cases) {
     return table.html();
 }
 
-std::string figure(const std::string& name, const std::filesystem::path& results) {
-    const std::string svg = bytes_of(results / "svg" / (name + ".svg"));
-    if (svg.empty()) return "<p>No plot is published.</p>";
-    return fmt::format("<figure class=\"scroll\">{}</figure>\n", inline_svg(thin_svg(svg), name));
-}
-
 std::string links(const std::string& name, const std::filesystem::path& results) {
     std::string s;
     for (const auto& [path, what] : {std::pair{"csv/" + name + ".csv", "all values (CSV)"},
@@ -126,7 +120,7 @@ std::string detail(const CaseClaims& c, const std::filesystem::path& results) {
                    {.html = fmt::format("{:.2f}", seconds), .key = seconds, .number = true}},
                   v->value("pass", false) || !short_of.empty() ? "" : "fail");
     }
-    s += table.html() + figure(c.name, results);
+    s += table.html() + published_plot(results / "svg" / (c.name + ".svg"), c.name);
     return s + fmt::format("<p class=\"fine\"><code>./weir.sh validate {0} --size {1}</code> · commit {2}{5}, {3}{4}</p></details>\n",
                            escaped(c.name), escaped(text_at(first, "size")), escaped(text_at(first, "commit")),
                            escaped(text_at(first, "machine")), links(c.name, results),

@@ -1,7 +1,7 @@
 #include "validation/page/sections.hpp"
 
-#include "validation/page/chart.hpp"
 #include "validation/page/text.hpp"
+#include "validation/page/thin.hpp"
 
 #include <fmt/format.h>
 
@@ -24,36 +24,6 @@ double abscissa(const json& study, const json& point) {
     const double seconds = number_at(point, "seconds_per_second").value_or(0);
     return seconds > 0 ? 1 / seconds : 0;
 }
-
-/// One curve a method through its settings, both in the order of the study, and the front.
-Panel panel_of(const json& study) {
-    const std::string unit = text_at(study, "unit");
-    Panel panel{
-        .title = text_at(study, "question"),
-        .x = {by_step(study) ? "computing time per step [ms]" : "real-time factor: simulated seconds per second of computing", true},
-        .y = {text_at(study, "error") + (unit.empty() ? "" : " [" + unit + "]"), true}};
-    Curve front{.label = "Pareto front: no configuration is both cheaper and more accurate", .dashed = true};
-    std::vector<const json*> ordered;
-    for (const json& p : study["points"]) {
-        if (failed(p)) continue;
-        ordered.push_back(&p);
-        if (p.value("front", false))
-            front.x.push_back(abscissa(study, p)), front.y.push_back(number_at(p, "error").value_or(0)),
-                front.names.push_back(text_at(p, "name"));
-    }
-    std::stable_sort(ordered.begin(), ordered.end(), [](auto* p, auto* q) { return p->value("order", 0) < q->value("order", 0); });
-    for (const json* p : ordered) {
-        const std::string method = text_at(*p, p->contains("label") ? "label" : "method");
-        auto at = std::find_if(panel.curves.begin(), panel.curves.end(), [&](const Curve& c) { return c.label == method; });
-        if (at == panel.curves.end()) at = panel.curves.insert(at, Curve{.label = method});
-        at->x.push_back(abscissa(study, *p)), at->y.push_back(number_at(*p, "error").value_or(0)), at->names.push_back(text_at(*p, "name"));
-    }
-    panel.curves.push_back(std::move(front));
-    panel.shade = {number_at(study, "known_to").value_or(0), "below the uncertainty of the reference"};
-    return panel;
-}
-
-std::vector<Mark> marks_of(const json& study) { return by_step(study) ? std::vector<Mark>{} : std::vector<Mark>{{1, "real time"}}; }
 
 std::string table_of(const json& study) {
     std::vector<std::string> heads = {"setting", text_at(study, "error"), "× real time", "ms of a 60 Hz frame", "ms per step", "MB",
@@ -84,11 +54,10 @@ std::string table_of(const json& study) {
 
 std::string study_html(const json& study, const std::filesystem::path& results) {
     const std::string name = text_at(study, "study");
-    const Panel panel = panel_of(study);
     std::string s = fmt::format(
-        "<article id=\"cost-{}\"><h3>{}</h3>\n<div class=\"beside\"><figure><div class=\"scroll\">{}</div>{}</figure>\n<ul "
+        "<article id=\"cost-{}\"><h3>{}</h3>\n<div class=\"beside\">{}<ul "
         "class=\"advice\">",
-        escaped(name), escaped(text_at(study, "question")), chart_svg(panel, marks_of(study)), chart_legend(panel));
+        escaped(name), escaped(text_at(study, "question")), published_plot(results / "cost" / "svg" / (name + ".svg"), "cost-" + name));
     for (const json& sentence : study["advice"]) s += "<li>" + escaped(sentence.get<std::string>()) + "</li>";
     s += "</ul></div>\n";
     for (const json& note : study.value("notes", json::array())) s += "<p class=\"fine\">" + escaped(note.get<std::string>()) + "</p>\n";
@@ -169,7 +138,34 @@ std::vector<const json*> in_reading_order(const std::vector<json>& studies) {
 
 }  // namespace
 
-std::string cost_figure(const json& study) { return chart_file(panel_of(study), marks_of(study)); }
+/// One curve a method through its settings, both in the order of the study, and the front.
+Panel cost_panel(const json& study) {
+    const std::string unit = text_at(study, "unit");
+    Panel panel{
+        .title = text_at(study, "question"),
+        .x = {by_step(study) ? "computing time per step [ms]" : "real-time factor: simulated seconds per second of computing", true},
+        .y = {text_at(study, "error") + (unit.empty() ? "" : " [" + unit + "]"), true}};
+    Curve front{.label = "Pareto front: no configuration is both cheaper and more accurate", .dashed = true};
+    std::vector<const json*> ordered;
+    for (const json& p : study["points"]) {
+        if (failed(p)) continue;
+        ordered.push_back(&p);
+        if (p.value("front", false))
+            front.x.push_back(abscissa(study, p)), front.y.push_back(number_at(p, "error").value_or(0)),
+                front.names.push_back(text_at(p, "name"));
+    }
+    std::stable_sort(ordered.begin(), ordered.end(), [](auto* p, auto* q) { return p->value("order", 0) < q->value("order", 0); });
+    for (const json* p : ordered) {
+        const std::string method = text_at(*p, p->contains("label") ? "label" : "method");
+        auto at = std::find_if(panel.curves.begin(), panel.curves.end(), [&](const Curve& c) { return c.label == method; });
+        if (at == panel.curves.end()) at = panel.curves.insert(at, Curve{.label = method});
+        at->x.push_back(abscissa(study, *p)), at->y.push_back(number_at(*p, "error").value_or(0)), at->names.push_back(text_at(*p, "name"));
+    }
+    panel.curves.push_back(std::move(front));
+    panel.shade = {number_at(study, "known_to").value_or(0), "below the uncertainty of the reference"};
+    if (!by_step(study)) panel.marks = {{1, "real time"}};
+    return panel;
+}
 
 Section cost_section(const std::vector<json>& studies, const std::filesystem::path& results) {
     Section section{.summary = "<p>No study is published: <code>./weir.sh cost --all --publish</code></p>"};

@@ -1,6 +1,7 @@
 #include "validation/page/sections.hpp"
 
 #include "validation/page/text.hpp"
+#include "validation/page/thin.hpp"
 
 #include <fmt/format.h>
 
@@ -143,8 +144,7 @@ Map drawing_of_map(const json& m) {
         map.cells.emplace_back();
         for (const json& c : column) {
             if (c.value("stable", true)) {
-                map.cells.back().push_back(
-                    {.text = "held", .detail = fmt::format("stable for {} steps or to the scene's end", m.value("steps", 0))});
+                map.cells.back().push_back({.text = "stable"});
                 continue;
             }
             const std::string kind = text_at(c, "kind");
@@ -152,16 +152,21 @@ Map drawing_of_map(const json& m) {
             if (at == map.kinds.end()) at = map.kinds.insert(at, kind);
             const auto step = c.value("step", std::int64_t{0});
             map.cells.back().push_back(
-                {.stable = false,
-                 .kind = static_cast<int>(at - map.kinds.begin()),
-                 .text = fmt::format("{}", step),
-                 .detail = fmt::format("step {}, t = {:.3g} s: {}", step, c.value("time", 0.0), text_at(c, "what"))});
+                {.stable = false, .kind = static_cast<int>(at - map.kinds.begin()), .text = fmt::format("{}", step)});
         }
     }
     return map;
 }
 
-Section limits_section(const std::vector<json>& studies) {
+std::string map_file(const json& study, const json& map) {
+    const std::string method = text_at(map, "method");
+    std::string name = text_at(study, "study") + "-" + text_at(map, "name") + (method.empty() ? "" : "-" + method);
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_'; }, '-');
+    return name + ".svg";
+}
+
+Section limits_section(const std::vector<json>& studies, const std::filesystem::path& results) {
     if (studies.empty()) return {.summary = "<p>No limit is published: <code>./weir.sh stability --all --publish</code></p>", .html = ""};
     HtmlTable table({"solver", "parameter raised", "kind", "stable up to", "theory", "guaranteed", "first failure", "case"},
                     "Each key is raised until an invariant fails; the last value at which all invariants pass is the limit");
@@ -178,12 +183,14 @@ Section limits_section(const std::vector<json>& studies) {
         "given in the table. {} further axes check independence of units, {} check guards. {}</p>{}",
         counts.below + counts.doubted ? "no" : "pass", counts.limits, counts.unbroken, counts.units, counts.guards, counts.verdict(),
         beside_theory(studies));
+    int maps = 0;
     for (const json& study : studies)
         if (study.contains("maps"))
             for (const json& map : study["maps"])
                 section.html +=
-                    fmt::format("<figure><div class=\"scroll\">{}</div><figcaption>{}: difficulty: {}</figcaption></figure>\n",
-                                map_svg(drawing_of_map(map)), escaped(text_at(study, "study")), escaped(text_at(map, "hard_because")));
+                    fmt::format("<div>{}<p class=\"fine\">{}: difficulty: {}</p></div>\n",
+                                published_plot(results / "stability" / "svg" / map_file(study, map), fmt::format("map{}", ++maps)),
+                                escaped(text_at(study, "study")), escaped(text_at(map, "hard_because")));
     if (!section.html.empty()) section.html = "<h3>Two axes at once</h3><div class=\"maps\">" + section.html + "</div>";
     section.html += not_reached(studies) + "<h3>All limits</h3>" + table.html() + reasons(studies);
     std::string footer;

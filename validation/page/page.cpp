@@ -32,14 +32,6 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
     return files;
 }
 
-/// Every JSON object in a folder that has this list.
-std::vector<json> studies_in(const std::filesystem::path& folder, const char* list) {
-    std::vector<json> studies;
-    for (const auto& file : files_in(folder, ".json"))
-        if (json study = json_of(file); study.is_object() && study.contains(list)) studies.push_back(std::move(study));
-    return studies;
-}
-
 std::string footer(const json& verdicts) {
     std::set<std::string> machines;
     for (const json& v : verdicts) machines.insert(fmt::format("commit {}, {}", text_at(v, "commit"), text_at(v, "machine")));
@@ -111,13 +103,20 @@ Section pictures_section(const std::filesystem::path& results) {
     return section;
 }
 
+std::vector<json> studies_in(const std::filesystem::path& folder, const char* list) {
+    std::vector<json> studies;
+    for (const auto& file : files_in(folder, ".json"))
+        if (json study = json_of(file); study.is_object() && study.contains(list)) studies.push_back(std::move(study));
+    return studies;
+}
+
 std::string page_html(const std::filesystem::path& results) {
     const json verdicts = json_of(results / "verdicts.json");
     if (!verdicts.is_array())
         throw BadInput(fmt::format("{} has no readable verdicts.json; weir validate --all --publish writes it", results.string()));
     const Section claims = claims_section(verdicts, results);
     const Section cost = cost_section(studies_in(results / "cost" / "json", "points"), results);
-    const Section limits = limits_section(studies_in(results / "stability", "limits"));
+    const Section limits = limits_section(studies_in(results / "stability", "limits"), results);
     const Section pictures = pictures_section(results);
     std::string s = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>weir: results</title>\n"

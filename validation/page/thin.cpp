@@ -1,5 +1,7 @@
 #include "validation/page/thin.hpp"
 
+#include "validation/page/text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -211,6 +213,12 @@ std::string inline_svg(const std::string& svg, std::string_view prefix) {
         line_begins = c == '\n';
     }
     return without_empty_groups(one_line);
+}
+
+std::string published_plot(const std::filesystem::path& svg, const std::string& prefix) {
+    const std::string text = bytes_of(svg);
+    if (text.empty()) return "<p>No plot is published.</p>";
+    return "<figure class=\"scroll\">" + inline_svg(thin_svg(text), prefix) + "</figure>\n";
 }
 
 }  // namespace weir::validation

@@ -84,7 +84,7 @@ Numbers ci_numbers(const CaseResult& result, const std::filesystem::path& out, c
 bool write_outputs(const CaseResult& result, const std::filesystem::path& out) {
     output::write_file(out / "csv" / (result.plan.name + ".csv"), csv(result));
     try {
-        draw(fmt::format("{} ({})", result.plan.name, name(result.plan.size)), panels_of(result),
+        draw(gnuplot_program(fmt::format("{} ({})", result.plan.name, name(result.plan.size)), panels_of(result)),
              out / "svg" / (result.plan.name + ".svg"));
         return true;
     } catch (const OutputError& failed) {

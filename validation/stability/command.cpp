@@ -8,6 +8,7 @@
 #include "validation/page/sections.hpp"
 #include "validation/report/command.hpp"
 #include "validation/report/publish.hpp"
+#include "validation/report/study_plots.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -71,8 +72,7 @@ void publish_limits(const std::vector<json>& studies, const std::filesystem::pat
     const auto lock = lock_published(folder, out);
     for (const json& study : studies) {
         output::write_file(folder / (study["study"].get<std::string>() + ".json"), study.dump(1) + "\n");
-        for (const json& map : study["maps"])
-            output::write_file(folder / "svg" / map_file(study, map), standalone(map_svg(drawing_of_map(map))));
+        draw_maps(study, folder / "svg");
     }
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder))

@@ -46,8 +46,6 @@ std::string all_limits_markdown(const std::vector<nlohmann::json>& studies);
 nlohmann::json map_json(const StressMap& map, const std::vector<std::vector<std::optional<Break>>>& cells, double seconds);
 /// The maps of a study for the terminal: a dot where nothing broke, a letter for what broke first.
 std::string maps_text(const nlohmann::json& study);
-/// "study-dt-against-iterations-flip.svg"
-std::string map_file(const nlohmann::json& study, const nlohmann::json& map);
 
 /// Runs the command and returns its exit code: 1 where a guaranteed range is not reached, an axis proves to be another
 /// than it says, or published limits are older than the code. Throws BadInput

@@ -1,6 +1,8 @@
 #include "validation/stability/limit.hpp"
 
 #include "core/error.hpp"
+#include "core/step_quantities.hpp"
+#include "sim/loop.hpp"
 #include "sim/simulation.hpp"
 
 #include <fmt/format.h>
@@ -16,9 +18,7 @@ namespace {
 constexpr int values_of_axis = 6;  // from the low end of an axis to its high end
 
 /// Returns whether a quantity has no value before the first step.
-bool needs_step(const std::string& series) {
-    return series == "divergence" || series == "density_error" || series == "dt" || series == "cfl" || series == "fastest";
-}
+bool needs_step(const std::string& series) { return find_step_quantity(series) || series == "fastest"; }
 
 /// Watches one invariant from step to step.
 class Watch {
@@ -160,15 +160,18 @@ std::optional<Break> run_watched(const Variant& variant, const Stress& stress, r
         return std::nullopt;
     };
     if (auto at_start = broken()) return at_start;
-    while (!simulation->finished() && simulation->steps() < stress.steps) {
-        try {
-            report = simulation->step();
-        } catch (const NumericalFailure& failure) {
-            return failed(failure, simulation->steps() + 1, simulation->time());
-        }
-        preconditions.step(*simulation, report);
-        if (auto found = broken()) return found;
+    std::optional<Break> found;
+    try {
+        sim::advance(*simulation, {.steps = stress.steps}, [&](const StepReport& last, double) {
+            report = last;
+            preconditions.step(*simulation, report);
+            found = broken();
+            return !found;
+        });
+    } catch (const NumericalFailure& failure) {
+        return failed(failure, simulation->steps() + 1, simulation->time());
     }
+    if (found) return found;
     preconditions.end(*simulation, report);
     if (!stress.cut) check(false);
     if (measured) *measured = preconditions.measured();

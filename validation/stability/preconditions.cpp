@@ -252,11 +252,7 @@ real value_of(const std::string& name, const Simulation& simulation, const StepR
         return value_of(name.substr(0, plus), simulation, report) + value_of(name.substr(plus + 1), simulation, report);
     if (const auto minus = name.find('-'); minus != std::string::npos)
         return value_of(name.substr(0, minus), simulation, report) - value_of(name.substr(minus + 1), simulation, report);
-    if (name == "divergence") return report.max_divergence;
-    if (name == "iterations") return static_cast<real>(report.iterations);
-    if (name == "density_error") return report.density_error;
-    if (name == "dt") return report.dt;
-    if (name == "cfl") return report.cfl;
+    if (const StepQuantity* quantity = find_step_quantity(name)) return quantity->value(report);
     for (const Integral& i : simulation.solver().integrals())
         if (i.name == name) return i.value;
     if (const auto value = counted(name, simulation, report)) return *value;

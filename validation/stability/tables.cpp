@@ -1,6 +1,8 @@
 // Limits as text.
 #include "validation/stability/command.hpp"
 
+#include "validation/page/sections.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -189,13 +191,6 @@ std::string maps_text(const json& study) {
         for (std::size_t k = 0; k < kinds.size(); ++k) s += fmt::format("    {} {}\n", static_cast<char>('a' + k % 26), kinds[k]);
     }
     return s;
-}
-
-std::string map_file(const json& study, const json& map) {
-    std::string name = text(study, "study") + "-" + text(map, "name") + (text(map, "method").empty() ? "" : "-" + text(map, "method"));
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_'; }, '-');
-    return name + ".svg";
 }
 
 }  // namespace weir::validation

@@ -34,10 +34,11 @@ bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
     return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
 }
 
-std::string replicated_pressure(const scene::Scene& scene, const Cut& cut) {
-    if (could_hold_own_planes(scene, cut)) return "the levels of the pressure of fewer than 20,000 cells";
-    if (method_of(scene).distributed_levels) return "the levels of the pressure, all of them";
-    return method_of(scene).needs_petsc ? "the matrix of the pressure" : "the pressure";
+scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Cut& cut) {
+    using scene::ReplicatedWork;
+    if (could_hold_own_planes(scene, cut)) return {ReplicatedWork::small_pressure_levels};
+    if (method_of(scene).distributed_levels) return {ReplicatedWork::pressure_levels};
+    return {method_of(scene).needs_petsc ? ReplicatedWork::pressure_matrix : ReplicatedWork::pressure};
 }
 
 template <int D>

@@ -2,6 +2,7 @@
 #pragma once
 #include "parallel/held_planes.hpp"
 #include "parallel/partition.hpp"
+#include "scene/replicated_work.hpp"
 #include "scene/scene.hpp"
 
 #include <string>
@@ -14,7 +15,7 @@ bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
 /// The same by the scene alone, without requests for whole fields.
 bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
 /// The replicated work of the pressure solve: the small levels of a distributed "multigrid", the matrix of PETSc, otherwise all.
-std::string replicated_pressure(const scene::Scene& scene, const Cut& cut);
+scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Cut& cut);
 /// The storage of the scene's solver: distributed storage has `ghost_planes` planes.
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach = 1);

@@ -13,7 +13,7 @@ bool weir::fuzz::frame(std::string_view bytes) {
             (void)app::scene_of_run(scratch_folder());
         } else if (bytes.find("\"Collection\"") != std::string_view::npos) {
             const auto file = written("grid.pvd", bytes);
-            (void)output::is_ours(file);
+            (void)output::is_ours(file, output::pvd_index());
             (void)output::read_series(file);
         } else {
             (void)output::read_vtk(written("frame.vti", bytes));

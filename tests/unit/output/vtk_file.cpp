@@ -2,7 +2,7 @@
 #include "output/vtk_file.hpp"
 
 #include "core/error.hpp"
-#include "output/frame_files.hpp"
+#include "output/vtk_frame.hpp"
 #include "parallel/partition.hpp"
 #include "sim/registry.hpp"
 #include "sim/solid_cells.hpp"

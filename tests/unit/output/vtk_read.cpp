@@ -2,8 +2,8 @@
 #include "output/vtk_read.hpp"
 
 #include "core/error.hpp"
-#include "output/frame_files.hpp"
 #include "output/vtk_file.hpp"
+#include "output/vtk_frame.hpp"
 #include "sim/registry.hpp"
 #include "sim/simulation.hpp"
 #include "support/temporary_folder.hpp"

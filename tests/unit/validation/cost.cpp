@@ -260,11 +260,16 @@ TEST("a figure joins the settings of a method in the study's order, however thei
     StudyResult result{.study = {.name = "s", .error = "e"}};
     result.points = {point("b", 3, 0.3), point("b", 2, 0.1), point("b", 1, 0.2), point("a", 1, 0.01)};
     mark_front(result.points, result.study);
-    const std::string figure = cost_figure(cost_json(result));
-    EXPECT_LT(figure.find("<title>b: 3.333, 3</title>"), figure.find("<title>b: 10, 2</title>"));
-    EXPECT_LT(figure.find("<title>b: 10, 2</title>"), figure.find("<title>b: 5, 1</title>"));
-    EXPECT_LT(figure.find("<title>b: 5, 1</title>"), figure.find("<title>a: 100, 1</title>"));
-    EXPECT_NE(figure.find("<title>a: 100, 1</title>"), std::string::npos);
+    const Panel panel = cost_panel(cost_json(result));
+    ASSERT_EQ(panel.curves.size(), 3u) << "two methods and the front";
+    const auto expect = [](const Curve& c, const std::string& label, const std::vector<real>& x, const std::vector<real>& y) {
+        EXPECT_EQ(c.label, label);
+        EXPECT_EQ(c.y, y);
+        ASSERT_EQ(c.x.size(), x.size());
+        for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(c.x[i], x[i], 1e-12 * x[i]);
+    };
+    expect(panel.curves[0], "b", {1 / 0.3, 1 / 0.1, 1 / 0.2}, {3, 2, 1});
+    expect(panel.curves[1], "a", {1 / 0.01}, {1});
 }
 
 TEST("a device is named with its settings, so that a processor is not taken for a GPU") {
@@ -274,7 +279,7 @@ TEST("a device is named with its settings, so that a processor is not taken for 
     mark_front(result.points, result.study);
     EXPECT_EQ(result.points[0].name(), "pbf-opencl 64 (on CPU)");
     EXPECT_EQ(notes(result).front(), "pbf-opencl: a processor (CPU, 2 units); this is no GPU.");
-    EXPECT_NE(cost_figure(cost_json(result)).find("pbf-opencl (on CPU)"), std::string::npos);
+    EXPECT_EQ(cost_panel(cost_json(result)).curves.at(0).label, "pbf-opencl (on CPU)");
 }
 
 TEST("--vary replaces a sweep, multiplies methods by words, and refuses what no scene takes") {

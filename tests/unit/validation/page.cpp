@@ -2,7 +2,6 @@
 #include "validation/page/page.hpp"
 
 #include "core/error.hpp"
-#include "validation/page/chart.hpp"
 #include "validation/page/readme.hpp"
 #include "validation/page/sections.hpp"
 #include "validation/page/text.hpp"
@@ -151,23 +150,6 @@ TEST("a folder without verdicts is refused by name") {
     } catch (const weir::BadInput& wrong) {
         EXPECT_NE(std::string(wrong.what()).find("verdicts.json"), std::string::npos) << wrong.what();
     }
-}
-
-TEST("a diagram holds every point that its axes can show, and a map one cell a run") {
-    const Panel panel{.title = "t", .x = {"x", true}, .y = {"y", true}, .curves = {{.label = "a", .x = {1, 10, -1}, .y = {1, 2, 3}}}};
-    EXPECT_EQ(count(chart_svg(panel), "<circle"), 2u) << "a negative number has no place on a logarithmic axis";
-    const std::string file = chart_file({.title = "t", .x = {"x"}, .y = {"y"}, .curves = panel.curves, .shade = {2, "not told apart"}});
-    EXPECT_EQ(count(file, "class=\"shade\""), 2u) << "in the diagram and in the legend, which says what it is";
-    EXPECT_NE(file.find(">not told apart</text>"), std::string::npos);
-    const Map map{.title = "t",
-                  .x_label = "x",
-                  .y_label = "y",
-                  .x = {"1", "2"},
-                  .y = {"a"},
-                  .cells = {{{.stable = true}}, {{.stable = false, .kind = 0, .text = "7"}}},
-                  .kinds = {"volume"}};
-    EXPECT_EQ(count(map_svg(map), "class=\"cell held\"><rect x"), 2u) << "one cell and its entry in the legend";
-    EXPECT_EQ(count(map_svg(map), "class=\"cell k0\"><rect x"), 2u);
 }
 
 TEST("an SVG in a page has no groups that hold nothing, and keeps the others") {

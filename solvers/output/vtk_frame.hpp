@@ -2,14 +2,14 @@
 #pragma once
 #include "core/solver.hpp"
 #include "core/surface_mesh.hpp"
-#include "output/frames.hpp"
+#include "output/frame_format.hpp"
 #include "output/vtk_file.hpp"
 
 #include <string>
 
 namespace weir::output {
 
-/// Grid fields as cell data of an image. Face fields are interpolated to the cells' centres, as vectors of three components.
+/// Grid fields as cell data of an image.
 VtkFile image_of(const FieldSet& fields, real t, const FrameOptions& options);
 /// Component `axis` of every chosen face field, as point data of an image whose points are the centres of the faces across that axis.
 VtkFile face_image_of(const FieldSet& fields, int axis, real t, const FrameOptions& options);
@@ -17,8 +17,5 @@ VtkFile face_image_of(const FieldSet& fields, int axis, real t, const FrameOptio
 VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, const FrameOptions& options);
 /// Triangles with "Normals", "velocity" where known, and "thickness" at their corners; in parallel each rank has a part. Collective.
 VtkFile surface_of(const SurfaceMesh& mesh, real t, const FrameOptions& options);
-
-/// Returns whether `options` select this field.
-bool chosen(const FrameOptions& options, const FieldView& field);
 
 }  // namespace weir::output

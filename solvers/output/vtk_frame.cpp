@@ -1,5 +1,6 @@
-#include "output/frame_files.hpp"
+#include "output/vtk_frame.hpp"
 
+#include "output/frame_arrays.hpp"
 #include "parallel/communicator.hpp"
 #include "parallel/partition.hpp"
 
@@ -12,53 +13,6 @@
 namespace weir::output {
 
 namespace {
-
-template <class Value>
-DataArray real_array(const FrameOptions& options, std::string name, int components, const Parts& tuples, Value value) {
-    if (options.single_precision) return data_array<float>(std::move(name), components, tuples, std::move(value));
-    return data_array<double>(std::move(name), components, tuples, std::move(value));
-}
-
-/// Vectors have three components in VTK for any dimension: the third is zero in 2D.
-int vtk_components(const FieldView& field) { return field.components() == 1 ? 1 : 3; }
-
-/// The elements of a field; for a part of the particles, starting at global index `first`.
-DataArray as_it_is(const FieldView& field, const Parts& tuples, const FrameOptions& options, std::size_t first = 0) {
-    return real_array(options, field.name, vtk_components(field), tuples, [data = field.data, first](std::size_t i, int c) {
-        const auto at = static_cast<std::size_t>(c);
-        return at < data.size() ? data[at][i - first] : 0.0;
-    });
-}
-
-/// The mean of the two faces across each axis.
-DataArray at_centres(const FieldView& field, const GridView& grid, const Parts& tuples, const FrameOptions& options) {
-    const auto nx = static_cast<std::size_t>(grid.cells[0]), ny = static_cast<std::size_t>(grid.cells[1]);
-    return real_array(options, field.name, 3, tuples, [data = field.data, nx, ny](std::size_t i, int c) {
-        if (c >= static_cast<int>(data.size())) return 0.0;
-        const std::size_t x = i % nx, y = i / nx % ny, z = i / (nx * ny);
-        const std::size_t wide = nx + (c == 0), high = ny + (c == 1);
-        const std::size_t lower = x + wide * (y + high * z), step = c == 0 ? 1 : c == 1 ? wide : wide * high;
-        const auto& face = data[static_cast<std::size_t>(c)];
-        return 0.5 * (face[lower] + face[lower + step]);
-    });
-}
-
-/// The partition of the planes of an array, with `entries` elements per plane; all on rank 0, where all ranks store whole fields.
-Parts parts_of_planes(const FieldSet& fields, std::size_t entries, int planes) {
-    if (fields.cut == nullptr) return Parts::of_first(entries * static_cast<std::size_t>(planes));
-    Parts parts{{0}};
-    for (int rank = 0; rank < fields.cut->ranks(); ++rank)
-        parts.begins.push_back(entries * static_cast<std::size_t>(fields.cut->end(rank, planes)));
-    return parts;
-}
-
-/// The same for an array with these extents.
-Parts parts_of_grid(const FieldSet& fields, const std::array<int, 3>& n) {
-    const auto slowest = static_cast<std::size_t>(std::max(1, fields.grid.dim) - 1);
-    std::size_t plane = 1;
-    for (std::size_t a = 0; a < slowest; ++a) plane *= static_cast<std::size_t>(n[a]);
-    return parts_of_planes(fields, plane, n[slowest]);
-}
 
 /// Flags of cells hidden from VTK's filters: those in solids.
 DataArray hidden(std::vector<std::uint8_t> solid, const Parts& tuples) {
@@ -160,22 +114,13 @@ VtkFile points(std::vector<DataArray> data, const std::string& attributes, DataA
 
 }  // namespace
 
-bool chosen(const FrameOptions& options, const FieldView& field) {
-    return options.fields.empty() || field.name == "position" ||
-           std::find(options.fields.begin(), options.fields.end(), field.name) != options.fields.end();
-}
-
 VtkFile image_of(const FieldSet& fields, real t, const FrameOptions& options) {
     const GridView& grid = fields.grid;
     std::array<real, 3> origin = grid.origin;
     if (grid.dim == 2) origin[2] = 0;
     VtkFile file = image({grid.cells[0] + 1, grid.cells[1] + 1, grid.dim == 2 ? 1 : grid.cells[2] + 1}, origin, spacing_of(grid), t);
     const Parts cells = parts_of_grid(fields, grid.cells);
-    std::vector<DataArray> data;
-    for (const auto& field : fields.fields) {
-        if (field.where == Where::particle || !chosen(options, field)) continue;
-        data.push_back(field.where == Where::face ? at_centres(field, grid, cells, options) : as_it_is(field, cells, options));
-    }
+    std::vector<DataArray> data = cell_arrays(fields, options);
     if (options.solid) {
         const int rank = communicator().rank();
         data.push_back(hidden(options.solid(fields, t, cells.begin(rank), cells.end(rank)), cells));
@@ -216,7 +161,7 @@ VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, con
     const std::size_t first = fields.particles_in_parts ? all.begin(communicator().rank()) : 0;
     std::vector<DataArray> data;
     for (const auto& field : fields.fields)
-        if (field.set == set && field.name != "position" && chosen(options, field)) data.push_back(as_it_is(field, all, options, first));
+        if (field.set == set && field.name != "position" && chosen(options, field)) data.push_back(field_array(field, all, options, first));
     const auto itself = [](std::size_t i) { return static_cast<std::int64_t>(i); };
     Cells vertices = no_cells(), lines = no_cells(), polygons = no_cells();
     if (sheet == fields.sheets.end())
@@ -225,7 +170,7 @@ VtkFile particles_of(const FieldSet& fields, const std::string& set, real t, con
         polygons = quadrilaterals(*sheet, fields);
     else
         lines = all_on_first(1, static_cast<std::size_t>(sheet->points[0]), itself);
-    return points(std::move(data), "", as_it_is(position, all, options, first), vertices, lines, polygons, t);
+    return points(std::move(data), "", field_array(position, all, options, first), vertices, lines, polygons, t);
 }
 
 VtkFile surface_of(const SurfaceMesh& mesh, real t, const FrameOptions& options) {
