@@ -152,7 +152,11 @@ void publish(const std::vector<CaseResult>& results, const std::vector<json>& pi
         }
     for (std::size_t i = 0; i < results.size(); ++i) write_pins(pins.at(i), folder, results[i].plan.name);
     output::write_file(folder / "verdicts.json", entries.dump(1) + "\n");
-    output::write_file(folder / "index.md", index_markdown(entries));
+    write_index(folder);
+}
+
+void write_index(const std::filesystem::path& folder) {
+    output::write_file(folder / "index.md", index_markdown(read_entries(folder / "verdicts.json")));
 }
 
 }  // namespace weir::validation

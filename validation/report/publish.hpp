@@ -15,6 +15,9 @@ namespace weir::validation {
 /// The page made of all verdicts (with the machine and commit that each was measured on).
 std::string index_markdown(const nlohmann::json& verdicts);
 
+/// Writes folder/index.md from folder/verdicts.json.
+void write_index(const std::filesystem::path& folder);
+
 /// The lock of a folder of published results, which waits for another publication; none where `out` is that folder, whose lock its run has.
 std::unique_ptr<output::FolderLock> lock_published(const std::filesystem::path& folder, const std::filesystem::path& out);
 

@@ -6,6 +6,7 @@
 #include "validation/page/sections.hpp"
 #include "validation/page/text.hpp"
 #include "validation/page/thin.hpp"
+#include "validation/report/publish.hpp"
 
 #include <fmt/format.h>
 
@@ -121,6 +122,12 @@ TEST("texts are quoted, every claim carries its reason and blind spot, and the p
     EXPECT_NE(page.find("commit abc, a machine"), std::string::npos);
     EXPECT_EQ(page.find("src=\"http"), std::string::npos);
     EXPECT_EQ(page.find("href=\"http"), std::string::npos);
+}
+
+TEST("results/index.md is that of results/verdicts.json: `weir report` was run after the last publication") {
+    const fs::path results = fs::path(WEIR_SOURCE_DIR) / "results";
+    std::ifstream file(results / "verdicts.json");
+    EXPECT_EQ(bytes_of(results / "index.md"), index_markdown(json::parse(file)));
 }
 
 TEST("the README says of the results what they are: `weir report --readme README.md` was run after the last publication") {
