@@ -21,11 +21,12 @@ cd "$root/solvers"
 # In few pieces, since headers take most of a compiler's time. device_fluid.cpp has types in its unnamed namespace that device_solids.cpp has too.
 {
     echo '#include "benchmarks/gpu_particles/load_opencl.hpp"'
-    printf '#include "%s"\n' core/{checkpoint,hex_number,parallel,plane_store,slabs}.cpp geometry/*.cpp backend/{choice,opencl}.cpp matter/ambient.cpp pbf/{bodies,options}.cpp \
-        particles/{cell_sort,device_bodies,device_heat,device_memory,device_neighbours,device_sides,device_solids,domain,emitters,fluid,frame,heat,kernels,particle_exchange}.cpp \
-        particles/{scheme,solid_terms,solver,squeezed,walls}.cpp
+    printf '#include "%s"\n' core/{hex_number,parallel}.cpp parallel/{checkpoint,communicator,plane_store}.cpp geometry/*.cpp backend/{choice,opencl}.cpp matter/ambient.cpp pbf/{bodies,options}.cpp \
+        particles/opencl/{device_bodies,device_heat,device_memory,device_neighbours,device_sides,device_solids}.cpp \
+        particles/state/{domain,emitters,fluid,frame,kernels,scheme,solver}.cpp particles/boundaries/{solid_terms,squeezed,walls}.cpp \
+        particles/{heat/heat,ranks/particle_exchange,threads/cell_sort}.cpp
 } >"$work/solvers.cpp"
-printf '#include "%s"\n' particles/{beside_bodies,bodies_in_liquid,device_ice,ice,ice_pieces,vapour}.cpp geometry/mesh/mesh.cpp rigid/*.cpp >"$work/pieces.cpp"
+printf '#include "%s"\n' particles/{boundaries/beside_bodies,boundaries/bodies_in_liquid,opencl/device_ice,heat/ice,heat/ice_pieces,heat/vapour}.cpp geometry/mesh/mesh.cpp rigid/*.cpp >"$work/pieces.cpp"
 printf '#include "%s"\n' particles/opencl/device_fluid.cpp pbf/device_solver.cpp "$work/kernel_text.cpp" >"$work/step.cpp"
 compile() { # NAME SOURCE
     ${CXX:-c++} -std=c++20 ${CXXFLAGS:--O2} -ffp-contract=off -DFMT_HEADER_ONLY -ffunction-sections -fdata-sections -I"$work" -I. -I"$root" -c "$2" \

@@ -169,7 +169,7 @@ sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
 2d)
     compare all "$every" "$flat"
-    grep -q '"count":2,"cut":\[0,72,152\]' all-2/run.json || fail "run.json does not tell the ranks"
+    grep -q '"count":2,"partition":"planes","cut":\[0,72,152\]' all-2/run.json || fail "run.json does not tell the ranks"
     compare watched "2 1,3 2,4 1" "$flat" --set time.stop_when_steady=17 --set time.max_dt=0.005 --set time.cfl=0.5
     holds_own watched-2 watched-4
     ends_steady watched

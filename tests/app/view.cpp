@@ -202,7 +202,7 @@ TEST("what it cannot show is refused with what there is, and exit code 2") {
     TemporaryFolder folder;
     Process nothing({"view", folder.path(), "--png", folder.path() / "a.png"}, folder.path() / "log");
     EXPECT_EQ(nothing.wait(), 2);
-    EXPECT_NE(nothing.said().find("contains no series of frames"), std::string::npos) << nothing.said();
+    EXPECT_NE(nothing.said().find("contains no series of VTK frames"), std::string::npos) << nothing.said();
     const std::string display = std::getenv("DISPLAY");
     unsetenv("DISPLAY");
     Process blind({"view", run_of("water"), "--png", folder.path() / "a.png"}, folder.path() / "log");

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <sstream>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -188,9 +190,66 @@ std::string thin_svg(const std::string& svg) {
     return out;
 }
 
+namespace {
+
+/// The definitions between <defs> and </defs> as gnuplot writes them: one on a line, or a filter over several.
+std::vector<std::string> definitions_of(const std::string& defs) {
+    std::vector<std::string> list;
+    std::istringstream in(defs);
+    bool in_filter = false;
+    for (std::string line; std::getline(in, line);) {
+        if (line.find_first_not_of(" \t") == std::string::npos) continue;
+        if (in_filter)
+            list.back() += "\n" + line;
+        else
+            list.push_back(line);
+        if (line.find("<filter") != std::string::npos) in_filter = true;
+        if (line.find("</filter>") != std::string::npos) in_filter = false;
+    }
+    return list;
+}
+
+/// Whether `text` refers to the element that `definition` defines.
+bool refers_to(const std::string& text, const std::string& definition) {
+    const auto id = definition.find("id='");
+    if (id == std::string::npos) return true;
+    const std::string name = definition.substr(id + 4, definition.find('\'', id + 4) - id - 4);
+    for (const char* form : {"#{}'", "#{}\"", "#{})"})
+        if (text.find(fmt::format(fmt::runtime(form), name)) != std::string::npos) return true;
+    return false;
+}
+
+/// Without marks and filters that nothing uses: gnuplot defines all of them in each file.
+std::string without_unused_definitions(const std::string& svg) {
+    const auto begin = svg.find("<defs>"), end = svg.find("</defs>");
+    if (begin == std::string::npos || end == std::string::npos || end < begin) return svg;
+    std::vector<std::string> left = definitions_of(svg.substr(begin + 6, end - begin - 6)), kept;
+    const std::string head = svg.substr(0, begin), tail = svg.substr(end);
+    std::string using_text = head + tail;
+    for (bool found = true; found;) {  // a mark may use another one
+        found = false;
+        for (auto it = left.begin(); it != left.end();) {
+            if (!refers_to(using_text, *it)) {
+                ++it;
+                continue;
+            }
+            using_text += *it;
+            kept.push_back(*it);
+            it = left.erase(it), found = true;
+        }
+    }
+    std::string defs;
+    for (const auto& definition : kept) defs += "\n" + definition;
+    return head + "<defs>" + defs + "\n" + tail;
+}
+
+}  // namespace
+
 std::string inline_svg(const std::string& svg, std::string_view prefix) {
     const auto begin = svg.find("<svg");
-    std::string s = begin == std::string::npos ? svg : svg.substr(begin);
+    std::string s = without_unused_definitions(begin == std::string::npos ? svg : svg.substr(begin));
+    if (const auto desc = s.find("<desc>"); desc != std::string::npos && s.find("</desc>") != std::string::npos)
+        s.erase(desc, s.find("</desc>") + 7 - desc);
     if (const auto title = s.find("<title>Gnuplot</title>"); title != std::string::npos) s.erase(title, 22);
     for (const char* quote : {"'", "\""}) replace_all(s, fmt::format("id={}", quote), fmt::format("id={}{}-", quote, prefix));
     replace_all(s, "href='#", fmt::format("href='#{}-", prefix));
@@ -202,8 +261,11 @@ std::string inline_svg(const std::string& svg, std::string_view prefix) {
                                    {"rgb(  0,   0,   0)", "currentColor"},
                                    {"xlink:href", "href"},
                                    {" font-family=\"sans\"", ""},
-                                   {" stroke-linecap=\"butt\"", ""},  // as without
-                                   {" stroke-linejoin=\"miter\"", ""}})
+                                   {" stroke-width=\"1.00\"", ""},  // as without, like the next two
+                                   {" stroke-linecap=\"butt\"", ""},
+                                   {" stroke-linejoin=\"miter\"", ""},
+                                   {" class=\"gridline\"", ""},
+                                   {"  '/>", "'/>"}})
         replace_all(s, from, to);
     std::string one_line;  // no blank lines, no indentation
     bool line_begins = true;

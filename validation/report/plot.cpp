@@ -65,15 +65,16 @@ struct Range {
     bool log = false;
     real low = infinity, high = -infinity;
     void include(real value) { low = std::min(low, value), high = std::max(high, value); }
-    /// Some room beside the data; a flat line lies in the middle of the panel.
+    /// Some room beside the data; a flat line, but for round-off, lies in the middle of the panel.
     void widen() {
         if (!(low <= high)) low = high = log ? 1 : 0;
-        if (log && low == high)
+        const bool flat = high - low <= 1e-7 * std::max(std::abs(low), std::abs(high));  // ticks have nine digits
+        if (log && flat)
             low /= 10, high *= 10;
         else if (log) {
             const real room = std::max(1.3, std::pow(high / low, 0.05));
             low /= room, high *= room;
-        } else if (const real room = low == high ? std::max(1e-12, std::abs(low)) : 0.05 * (high - low); true)
+        } else if (const real room = flat ? std::max(1e-12, std::abs(low)) : 0.05 * (high - low); true)
             low -= room, high += room;
     }
     /// 0 at the low end, 1 at the high end.

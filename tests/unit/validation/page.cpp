@@ -124,10 +124,20 @@ TEST("texts are quoted, every claim carries its reason and blind spot, and the p
     EXPECT_EQ(page.find("href=\"http"), std::string::npos);
 }
 
+TEST("an inlined plot has the marks that it uses, and no others") {
+    const std::string svg =
+        "<svg width=\"10\"><defs>\n<circle id='gpPt5' r='1'/>\n<use xlink:href='#gpPt5' id='gpPt6'/>\n<path id='gpPt7' d='M0,0'/>\n"
+        "<filter id='textbox'>\n<feFlood/>\n</filter>\n</defs>\n<use xlink:href='#gpPt6' x='1'/></svg>";
+    const std::string page = inline_svg(svg, "a");
+    for (const char* used : {"id='a-gpPt5'", "id='a-gpPt6'", "href='#a-gpPt6'"}) EXPECT_NE(page.find(used), std::string::npos) << page;
+    for (const char* unused : {"gpPt7", "textbox", "feFlood"}) EXPECT_EQ(page.find(unused), std::string::npos) << page;
+}
+
 TEST("results/index.md is that of results/verdicts.json: `weir report` was run after the last publication") {
     const fs::path results = fs::path(WEIR_SOURCE_DIR) / "results";
     std::ifstream file(results / "verdicts.json");
-    EXPECT_EQ(bytes_of(results / "index.md"), index_markdown(json::parse(file)));
+    const auto values = [](const std::string& page) { return page.substr(0, page.find("Written by weir")); };  // and not by which program
+    EXPECT_EQ(values(bytes_of(results / "index.md")), values(index_markdown(json::parse(file))));
 }
 
 TEST("the README says of the results what they are: `weir report --readme README.md` was run after the last publication") {

@@ -53,6 +53,18 @@ Panel panel(const std::string& title, std::size_t count) {
     return p;
 }
 
+TEST("values that differ by round-off are drawn as a flat line: the range of their axis is not empty") {
+    for (const bool log : {false, true}) {
+        Panel p{.title = "p", .x = {"x", false}, .y = {"y", log}};
+        p.curves = {{.label = "kept", .x = {0, 1}, .y = {0.25, 0.25 * (1 + 1e-15)}}};
+        const std::string program = gnuplot_program("flat", {p});
+        std::smatch m;
+        ASSERT_TRUE(std::regex_search(program, m, std::regex("set yrange \\[([-0-9.e]+):([-0-9.e]+)\\]")));
+        EXPECT_LT(std::stod(m[1]), 0.2);
+        EXPECT_GT(std::stod(m[2]), 0.3);
+    }
+}
+
 TEST("legends lie below their axis titles and above the next row of panels, however many curves there are") {
     for (const std::size_t count : {1, 3, 9, 44}) {
         const Plot plot = plot_of(gnuplot_program("all", {panel("p", count), panel("q", 1), panel("r", count), panel("s", 2)}));
