@@ -95,7 +95,11 @@ std::string solver_section(const SolverSchema& solver) {
     std::string out = fmt::format("\n### Solver `{}`\n{} Works with dim = {}.\n", solver.name, solver.doc, fmt::join(solver.dims, " or "));
     const OwnKeys own = own_keys(solver);
     if (!own.leaves.empty()) out += "\n| key | value | if absent | meaning |\n|---|---|---|---|\n";
-    for (const auto& leaf : own.leaves) out += row(leaf.key, leaf.path);
+    for (const auto& leaf : own.leaves) {
+        out += row(leaf.key, leaf.path);
+        if (leaf.key.selector.empty()) continue;
+        out += rows(leaf.key.keys, leaf.path + (leaf.key.type == Type::tables ? "[]" : ""));  // common to all variants
+    }
     for (const auto& choice : own.choices) out += choice_list(choice);
     if (!solver.without.empty())
         out += fmt::format("\nIt does not support `{}`, and refuses a scene that contains them.\n", fmt::join(solver.without, "`, `"));

@@ -10,6 +10,12 @@ TEST("docs/scene.md is what weir describe --markdown writes") {
     EXPECT_EQ(scene::manual(sim::schemas()), test::content(file)) << "run: weir describe --markdown > docs/scene.md";
 }
 
+TEST("the manual has the keys that all variants of a solver's own table share") {
+    const std::string manual = scene::manual(sim::schemas());
+    for (const char* key : {"| `waves.level` |", "| `bodies[].density` |", "| `heaters[].power` |"})
+        EXPECT_NE(manual.find(key), std::string::npos) << key;
+}
+
 TEST("every key, variant and effect of the program can be described, and says what it is") {
     const auto check = [](const auto& self, const std::vector<scene::Key>& keys, const std::string& path) -> void {
         for (const auto& key : keys) {
