@@ -22,6 +22,14 @@ void* operator new(std::size_t size) {
     }
     return p;
 }
+/// Counted too: std::stable_sort pairs it with the operator delete below.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    try {
+        return operator new(size);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
 void operator delete(void* p) noexcept {
     weir::test::held -= static_cast<long>(malloc_usable_size(p));  // of nullptr 0
     std::free(p);
