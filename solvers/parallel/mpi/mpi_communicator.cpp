@@ -278,7 +278,7 @@ const MpiCommunicator* joined = nullptr;
 
 }  // namespace weir::distributed
 
-extern "C" weir::Communicator* weir_mpi_slabs() {
+extern "C" weir::Communicator* weir_mpi_communicator() {
     int given = 0, rank = 0, ranks = 1;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
