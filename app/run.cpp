@@ -63,7 +63,7 @@ std::string explain_ranks(const Simulation& simulation) {
     const scene::Scene& scene = simulation.scene();
     if (!communicator().several()) return {};
     const sim::Shares& shares = simulation.shares();
-    const Cut& cut = shares.cut;
+    const Partition& cut = shares.cut;
     std::string text = "in parallel on " + std::to_string(communicator().ranks()) + " ranks, ";
     if (shares.nothing_shared()) return text + "the domain cannot be partitioned: every rank computes all of it (replicated work)\n";
     text += std::string("partitioned along ") + (scene.dim() == 2 ? "y" : "z");

@@ -132,7 +132,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
         return row;
     }
     set_threads(threads);
-    const Cut cut = load_balanced_cut(blocks_in_planes(problem.A.cells), communicator().ranks());
+    const Partition cut = load_balanced_partition(blocks_in_planes(problem.A.cells), communicator().ranks());
     const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0" || solver.starts_with("petsc");
     const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
     row.setup_ms = row.solve_ms = infinity;

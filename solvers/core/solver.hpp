@@ -17,7 +17,7 @@
 
 namespace weir {
 
-struct Cut;  // parallel/partition.hpp
+struct Partition;  // parallel/partition.hpp
 
 inline constexpr real not_applicable = std::numeric_limits<real>::quiet_NaN();
 
@@ -87,7 +87,7 @@ struct FieldSet {
     /// The density at which a particle fills one cell [kg/m^3].
     real rest_density = 0;
     /// Distributed storage: the partition. Each rank may then read its own planes and the adjacent ghost planes.
-    const Cut* cut = nullptr;
+    const Partition* cut = nullptr;
     /// In parallel: every rank shows its part of each particle set; the parts are concatenated in rank order.
     bool particles_in_parts = false;
     const FieldView* find(std::string_view name) const {

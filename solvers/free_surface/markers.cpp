@@ -162,14 +162,14 @@ void Markers<D>::find_rows(const Frame<D>& frame) {
 }
 
 template <int D>
-bool Markers<D>::holds(const Frame<D>& frame, const Cut& cut, int rank, int plane) const {
+bool Markers<D>::holds(const Frame<D>& frame, const Partition& cut, int rank, int plane) const {
     const int n = frame.cells[D - 1], lo = cut.begin(rank) - 1, hi = cut.end(rank, n) + 1;
     if (plane >= lo && plane < hi) return true;
     return frame.periodic(D - 1) && (plane - n >= lo || plane + n < hi);
 }
 
 template <int D>
-void Markers<D>::keep_held(const Frame<D>& frame, const Cut& cut) {
+void Markers<D>::keep_held(const Frame<D>& frame, const Partition& cut) {
     if (cut.empty()) return;
     retain([&](std::size_t p) { return holds(frame, cut, communicator().rank(), frame.cell_of(position(p))[D - 1]); });
     trim();
@@ -178,7 +178,7 @@ void Markers<D>::keep_held(const Frame<D>& frame, const Cut& cut) {
 
 /// Returns the ranks that store the markers of each plane of cells.
 template <int D>
-void Markers<D>::find_holders(const Frame<D>& frame, const Cut& cut) {
+void Markers<D>::find_holders(const Frame<D>& frame, const Partition& cut) {
     const int planes = frame.cells[D - 1];
     if (!holders_.empty()) return;
     holders_.resize(static_cast<std::size_t>(planes));
@@ -221,7 +221,7 @@ std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, st
 
 /// The same for markers [first, last). Returns how many have left the domain.
 template <int D>
-std::int64_t Markers<D>::exchange(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave) {
+std::int64_t Markers<D>::exchange(const Frame<D>& frame, const Partition& cut, std::size_t first, std::size_t last, bool leave) {
     const auto ranks = static_cast<std::size_t>(communicator().ranks()), self = static_cast<std::size_t>(communicator().rank());
     going_.resize(ranks), sent_.resize(ranks), received_.resize(ranks);
     find_holders(frame, cut);
@@ -272,13 +272,13 @@ std::int64_t Markers<D>::exchange(const Frame<D>& frame, const Cut& cut, std::si
 }
 
 template <int D>
-std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Cut& cut, bool leave) {
+std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Partition& cut, bool leave) {
     const auto [first, last] = own(frame);
     return {static_cast<std::int64_t>(last - first), exchange(frame, cut, first, last, leave)};
 }
 
 template <int D>
-void Markers<D>::deal(const Frame<D>& frame, const Cut& cut) {
+void Markers<D>::deal(const Frame<D>& frame, const Partition& cut) {
     exchange(frame, cut, 0, count(), false);
     sent_.clear(), received_.clear();  // few markers migrate per step
     trim();

@@ -50,15 +50,15 @@ public:
 
     /// In parallel each rank stores the markers of its own planes of cells and ghost markers of one plane on each side, which contribute to
     /// the same faces.
-    bool holds(const Frame<D>& frame, const Cut& cut, int rank, int plane) const;
+    bool holds(const Frame<D>& frame, const Partition& cut, int rank, int plane) const;
     /// Keeps, of all markers, those that this rank stores.
-    void keep_held(const Frame<D>& frame, const Cut& cut);
+    void keep_held(const Frame<D>& frame, const Partition& cut);
     /// Migration after motion: every rank receives the markers that it stores now. Each rank sends its own in their order and receives in
     /// rank order, so that the stable sort gives the order of one process. Markers beyond the domain are removed if `leave`. Returns the
     /// number of this rank's own markers before, and of those that left.
-    std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Cut& cut, bool leave);
+    std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Partition& cut, bool leave);
     /// The same for an arbitrary distribution of all markers over the ranks, in rank order: parts of a file. Sorts.
-    void deal(const Frame<D>& frame, const Cut& cut);
+    void deal(const Frame<D>& frame, const Partition& cut);
     /// Gathers the markers of all ranks in `all`, in the sorted order of one process.
     void gather(const Frame<D>& frame, Markers& all) const;
     /// The markers of this rank's own planes: [first, second). Sorted.
@@ -100,9 +100,9 @@ private:
     void find_plane_starts(const Frame<D>& frame);
     std::size_t first_cell_from(std::size_t least) const;
     void find_rows(const Frame<D>& frame);
-    void find_holders(const Frame<D>& frame, const Cut& cut);
+    void find_holders(const Frame<D>& frame, const Partition& cut);
     std::int64_t find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
-    std::int64_t exchange(const Frame<D>& frame, const Cut& cut, std::size_t first, std::size_t last, bool leave);
+    std::int64_t exchange(const Frame<D>& frame, const Partition& cut, std::size_t first, std::size_t last, bool leave);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, from_;

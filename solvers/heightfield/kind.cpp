@@ -215,7 +215,7 @@ scene::SolverKind kind() {
             {.check = check_parallel,
              .distributed_storage = holds_own_rows,
              .traffic = traffic_of_step,
-             .partition = [](const scene::Scene& scene, int ranks) { return cut_of_rows(Plane(scene), ranks); }}};
+             .partition = [](const scene::Scene& scene, int ranks) { return partition_of_rows(Plane(scene), ranks); }}};
 }
 
 }  // namespace weir::heightfield

@@ -4,10 +4,10 @@
 
 namespace weir::heightfield {
 
-bool holds_own_rows(const scene::Scene&, const Cut& cut) { return !cut.empty() && !communicator().holds_whole(); }
+bool holds_own_rows(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
 HeldPlanes held_rows(const scene::Scene& scene) {
-    const Cut cut = cut_of_rows(Plane(scene), communicator().ranks());
+    const Partition cut = partition_of_rows(Plane(scene), communicator().ranks());
     return HeldPlanes(cut, holds_own_rows(scene, cut), rows_beside, Sides(scene)(1, 0).kind == SideKind::periodic);
 }
 

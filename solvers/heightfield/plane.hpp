@@ -46,10 +46,10 @@ struct Plane {
 inline constexpr int rows_beside = 2;
 
 /// Partition of the rows; none in 2D: a single row is replicated on every rank.
-inline Cut cut_of_rows(const Plane& plane, int ranks) { return plane.dim == 3 ? cut_of(plane.nz, ranks) : Cut{}; }
+inline Partition partition_of_rows(const Plane& plane, int ranks) { return plane.dim == 3 ? equal_partition(plane.nz, ranks) : Partition{}; }
 
 /// In parallel: returns whether rows have distributed storage: not where whole fields are read on all ranks.
-bool holds_own_rows(const scene::Scene& scene, const Cut& cut);
+bool holds_own_rows(const scene::Scene& scene, const Partition& cut);
 HeldPlanes held_rows(const scene::Scene& scene);
 
 /// This rank's rows and its ghost rows, as ranges of replicated work. All rows in one process.

@@ -42,7 +42,7 @@ public:
     /// The partition of a run among its ranks, and at the end each rank's traffic and memory.
     struct Ranks {
         int count = 1;
-        Cut cut{};
+        Partition cut{};
         Storage storage = Storage::replicated;
         scene::ReplicatedWorks replicated_work{};
         std::vector<Traffic> sent{};

@@ -18,15 +18,4 @@ Communicator& communicator() {
 
 void set_communicator(std::unique_ptr<Communicator> several) { of_process() = std::move(several); }
 
-OwnPlanes::OwnPlanes(const Cut& cut, int reach, int kept, bool ring) : before_(detail::own_share) {
-    if (cut.empty()) return;
-    const int rank = communicator().rank();
-    detail::own_share = {.begin = rank == 0 ? INT_MIN : cut.begin(rank),
-                         .end = rank + 1 == cut.ranks() ? INT_MAX : cut.end(rank, cut.planes()),
-                         .cut = &cut,
-                         .reach = reach,
-                         .kept = kept,
-                         .ring = ring};
-}
-
 }  // namespace weir

@@ -4,9 +4,9 @@
 #pragma once
 #include "core/error.hpp"
 #include "parallel/partition.hpp"
+#include "parallel/slab.hpp"
 
 #include <algorithm>
-#include <climits>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -57,12 +57,12 @@ public:
 
     /// Halo exchange: fills `ghost_planes` planes of each array on both sides of this rank's subdomain from their owners, in one message
     /// per rank. `ring`: also around the ends of a periodic axis.
-    virtual void refresh(const Cut&, std::span<const Planes>, int /*ghost_planes*/, bool /*ring*/) {}
-    void refresh(const Cut& cut, const Planes& planes, int ghost_planes, bool ring) {
+    virtual void refresh(const Partition&, std::span<const Planes>, int /*ghost_planes*/, bool /*ring*/) {}
+    void refresh(const Partition& cut, const Planes& planes, int ghost_planes, bool ring) {
         refresh(cut, std::span(&planes, 1), ghost_planes, ring);
     }
     /// All-gather of planes: receives every plane that this rank does not own.
-    virtual void gather(const Cut&, const Planes&) {}
+    virtual void gather(const Partition&, const Planes&) {}
     /// Streams the bytes of all ranks, in rank order, to rank 0: sink(data, count) is called there for each piece. An exception of the sink
     /// is rethrown after all data has been received.
     virtual void stream_to_first(const void* own, std::size_t bytes, const std::function<void(const void*, std::size_t)>& sink) {
@@ -142,77 +142,10 @@ void by_first_rank(F&& f) {
     throw OutputError("rank 0 could not write");
 }
 
-namespace detail {
-
-/// The range of loops over planes: planes [begin, end) of cells. Planes beyond the ends of the axis belong to its first and last plane.
-struct OwnShare {
-    int begin = INT_MIN, end = INT_MAX;
-    const Cut* cut = nullptr;  // nullptr: all planes
-    int reach = 0;             // depth to which ghost planes are filled
-    int kept = 0;              // ghost planes stored by an array constructed now; 0: whole arrays
-    bool ring = false;         // also around the ends of a periodic axis
-    int lower(int lo) const { return lo > begin ? lo : begin; }
-    int upper(int hi) const { return hi < end ? hi : end; }
-};
-inline OwnShare own_share;
-
-}  // namespace detail
-
-/// Scope in which loops run over this rank's planes, and sums over planes are global. Arrays constructed in it store these planes and
-/// `kept` ghost planes (parallel/plane_store.hpp), or all planes where `kept` is 0. An empty partition changes nothing.
-class OwnPlanes {
-public:
-    explicit OwnPlanes(const Cut& cut, int reach = 1, int kept = 0, bool ring = false);
-    ~OwnPlanes() { detail::own_share = before_; }
-    OwnPlanes(const OwnPlanes&) = delete;
-    OwnPlanes& operator=(const OwnPlanes&) = delete;
-
-private:
-    detail::OwnShare before_;
-};
-
-/// Scope in which loops also run over this many ghost planes on both sides: redundant local work instead of communication.
-class WiderPlanes {
-public:
-    explicit WiderPlanes(int planes) : before_(detail::own_share) {
-        if (before_.begin != INT_MIN) detail::own_share.begin -= planes;
-        if (before_.end != INT_MAX) detail::own_share.end += planes;
-    }
-    ~WiderPlanes() { detail::own_share = before_; }
-    WiderPlanes(const WiderPlanes&) = delete;
-    WiderPlanes& operator=(const WiderPlanes&) = delete;
-
-private:
-    detail::OwnShare before_;
-};
-
-/// Scope of replicated work: every rank does the same work and gets the same result. `really` false: no effect.
-class AllPlanes {
-public:
-    explicit AllPlanes(bool really = true) : before_(detail::own_share) {
-        if (really) detail::own_share = {};
-    }
-    ~AllPlanes() { detail::own_share = before_; }
-    AllPlanes(const AllPlanes&) = delete;
-    AllPlanes& operator=(const AllPlanes&) = delete;
-
-private:
-    detail::OwnShare before_;
-};
-
-/// Sets the depth to which ghost planes are filled from here on: the largest displacement in a step.
-inline void set_reach(int planes) { detail::own_share.reach = planes; }
-
-/// Returns whether loops over planes are distributed over several ranks.
-inline bool is_distributed() { return detail::own_share.cut != nullptr; }
-
-/// Returns whether the current loop range includes this plane.
-inline bool is_own_plane(int plane) { return plane >= detail::own_share.begin && plane < detail::own_share.end; }
-
-/// Sum of a value over the ranks; in one process, or for replicated work, the value itself.
-inline std::int64_t sum_of_ranks(std::int64_t own) {
-    if (!is_distributed()) return own;
-    const std::vector<std::int64_t> list = of_ranks(own);
+/// Sum of a value over the ranks that share these planes; for replicated work the value itself.
+inline std::int64_t sum_of_ranks(const OwnPlanes& own, std::int64_t value) {
+    if (!own.distributed()) return value;
+    const std::vector<std::int64_t> list = of_ranks(value);
     return std::accumulate(list.begin(), list.end(), std::int64_t{0});
 }
 

@@ -1,5 +1,6 @@
 // A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis. Sums are taken per plane
-// and added in the order of the planes, so results do not depend on the number of threads or ranks (parallel/communicator.hpp).
+// and added in the order of the planes, so results do not depend on the number of threads or ranks. Which planes are this rank's comes from
+// the extent (parallel/slab.hpp).
 #pragma once
 #include "core/parallel.hpp"
 #include "core/types.hpp"
@@ -16,12 +17,14 @@ namespace weir {
 template <class T, int D>
 class Grid {
 public:
-    Grid() { extent_.fill(0); }
+    Grid() = default;
     /// `margin`: number of extra planes before the first and after the last plane of cells.
-    explicit Grid(const Index<D>& extent, const T& value = T{}, int margin = 0)
-        : extent_(extent), data_(0, plane_of(extent), extent[D - 1] - 2 * margin, margin, value) {}
+    explicit Grid(const Extent<D>& extent, const T& value = T{}, int margin = 0)
+        : extent_(extent), data_(extent.own.slab, 0, plane_of(extent), extent[D - 1] - 2 * margin, margin, value) {}
 
-    const Index<D>& extent() const { return extent_; }
+    /// With the planes of this rank: loops and reductions over it are distributed like the grid.
+    const Extent<D>& extent() const { return extent_; }
+    const OwnPlanes& own() const { return extent_.own; }
     std::size_t size() const { return data_.size(); }
     bool empty() const { return data_.size() == 0; }
     /// Distance in memory between neighbours along an axis, in entries.
@@ -64,37 +67,42 @@ private:
         for (int d = 0; d + 1 < D; ++d) entries *= static_cast<std::size_t>(extent[d]);
         return entries;
     }
-    Index<D> extent_;
+    Extent<D> extent_;
     PlaneStore<T> data_;
 };
 
 /// f(plane) for this rank's planes within [lo, hi), in contiguous blocks, one per thread.
 template <class F>
-void for_each_plane(int lo, int hi, F&& f) {
-    parallel_for(detail::own_share.lower(lo), detail::own_share.upper(hi), f);
+void for_each_plane(const OwnPlanes& own, int lo, int hi, F&& f) {
+    parallel_for(own.lower(lo), own.upper(hi), f);
+}
+/// The same for all planes of a grid.
+template <int D, class F>
+void for_each_plane(const Extent<D>& extent, F&& f) {
+    for_each_plane(extent.own, 0, extent[D - 1], f);
 }
 
 namespace detail {
 /// f of all planes: computed here for this rank's planes, received from the owner for the others.
 template <class F>
-const std::vector<real>& parts_of_planes(int planes, F&& f) {
+const std::vector<real>& parts_of_planes(const OwnPlanes& own, int planes, F&& f) {
     auto& part = reduction_scratch(static_cast<std::size_t>(planes));
-    for_each_plane(0, planes, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
-    if (is_distributed()) communicator().gather(*own_share.cut, {part.data(), sizeof(real), planes});
+    for_each_plane(own, 0, planes, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
+    if (own.distributed()) communicator().gather(own.partition(), {part.data(), sizeof(real), planes});
     return part;
 }
 }  // namespace detail
 
 /// f(0) + f(1) + ... over planes, added in that order.
 template <class F>
-real plane_sum(int planes, F&& f) {
-    return detail::sum_in_order(detail::parts_of_planes(planes, f), planes);
+real plane_sum(const OwnPlanes& own, int planes, F&& f) {
+    return detail::sum_in_order(detail::parts_of_planes(own, planes, f), planes);
 }
 
 /// The largest of f over planes; NaN if any is NaN.
 template <class F>
-real plane_max(int planes, F&& f) {
-    return detail::largest_of(detail::parts_of_planes(planes, f), planes);
+real plane_max(const OwnPlanes& own, int planes, F&& f) {
+    return detail::largest_of(detail::parts_of_planes(own, planes, f), planes);
 }
 
 template <class T, int D>
@@ -104,24 +112,24 @@ Planes planes_of(Grid<T, D>& q) {
 /// Halo exchange: fills `ghost_planes` planes on both sides of this rank's subdomain.
 template <class T, int D>
 void refresh(Grid<T, D>& q, bool ring, int ghost_planes = 1) {
-    if (!is_distributed()) return;
+    if (!q.own().distributed()) return;
     q.store().open(ghost_planes, ring);
-    communicator().refresh(*detail::own_share.cut, planes_of(q), ghost_planes, ring);
+    communicator().refresh(q.own().partition(), planes_of(q), ghost_planes, ring);
 }
 /// All-gather: every rank receives all planes.
 template <class T, int D>
 void gather(Grid<T, D>& q) {
-    if (!is_distributed()) return;
+    if (!q.own().distributed()) return;
     q.store().open_all();
-    communicator().gather(*detail::own_share.cut, planes_of(q));
+    communicator().gather(q.own().partition(), planes_of(q));
 }
 
-/// f(I) for every I in [lo, hi), threaded over the slowest axis; x runs innermost.
+/// f(I) for every I of this rank in [lo, hi), threaded over the slowest axis; x runs innermost.
 template <int D, class F>
-void for_each_in(const Index<D>& lo, const Index<D>& hi, F&& f) {
+void for_each_in(const Index<D>& lo, const Extent<D>& hi, F&& f) {
     for (int d = 0; d < D; ++d)
         if (hi[d] <= lo[d]) return;
-    for_each_plane(lo[D - 1], hi[D - 1], [&](int outer) {
+    for_each_plane(hi.own, lo[D - 1], hi[D - 1], [&](int outer) {
         Index<D> I = lo;
         I[D - 1] = outer;
         if constexpr (D == 2) {
@@ -133,31 +141,25 @@ void for_each_in(const Index<D>& lo, const Index<D>& hi, F&& f) {
     });
 }
 
-/// The same; for an array of distributed storage, over all planes that this rank stores.
+/// f(I) for every I in [lo, hi) in the planes of an array that this rank stores, ghost planes included; an array that is stored whole: in
+/// all planes.
 template <class T, int D, class F>
 void for_each_held(const Grid<T, D>& q, const Index<D>& lo, const Index<D>& hi, F&& f) {
-    if (!q.store().windowed()) return for_each_in(lo, hi, f);
-    const auto before = detail::own_share;
-    for (int plane = lo[D - 1]; plane < hi[D - 1]; ++plane) {
-        if (!q.store().holds(plane)) continue;
-        Index<D> first = lo, last = hi;
-        first[D - 1] = plane, last[D - 1] = plane + 1;
-        detail::own_share.begin = plane, detail::own_share.end = plane + 1;
-        for_each_in(first, last, f);
-    }
-    detail::own_share = before;
+    if (!q.store().windowed()) return for_each_in(lo, replicated(hi), f);
+    for (int plane = lo[D - 1]; plane < hi[D - 1]; ++plane)
+        if (q.store().holds(plane)) for_each_in(lo, Extent<D>(hi, OwnPlanes::only(q.own().slab, plane, plane + 1)), f);
 }
 
-/// f(I) for every entry of a box of `extent` entries.
+/// f(I) for every entry of this rank in a box of `extent` entries.
 template <int D, class F>
-void for_each_cell(const Index<D>& extent, F&& f) {
+void for_each_cell(const Extent<D>& extent, F&& f) {
     for_each_in(Index<D>::constant(0), extent, f);
 }
 
 /// Sum of f(I) over a box, per plane of the slowest axis and then in the order of the planes: bitwise equal for any thread count.
 template <int D, class F>
-real sum_over(const Index<D>& extent, F&& f) {
-    return plane_sum(extent[D - 1], [&](int outer) {
+real sum_over(const Extent<D>& extent, F&& f) {
+    return plane_sum(extent.own, extent[D - 1], [&](int outer) {
         Index<D> I{};
         I[D - 1] = outer;
         real sum = 0;
@@ -173,8 +175,8 @@ real sum_over(const Index<D>& extent, F&& f) {
 
 /// Largest f(I) over a box; NaN if any is NaN (so that a maximum never hides one). -infinity for an empty box.
 template <int D, class F>
-real max_over(const Index<D>& extent, F&& f) {
-    return plane_max(extent[D - 1], [&](int outer) {
+real max_over(const Extent<D>& extent, F&& f) {
+    return plane_max(extent.own, extent[D - 1], [&](int outer) {
         Index<D> I{};
         I[D - 1] = outer;
         real m = -infinity;

@@ -13,11 +13,11 @@
 namespace weir {
 
 /// Partitions the planes so that their work is as even as boundaries at multiples of 8 planes allow (of fewer where there are few planes,
-/// as in cut_of). Each rank gets at least one such slab. Planes without work still belong to the slab of their owner. One rank gets no
+/// as in equal_partition). Each rank gets at least one such slab. Planes without work still belong to the slab of their owner. One rank gets no
 /// partition.
-inline Cut load_balanced_cut(std::span<const std::int64_t> work, int ranks) {
+inline Partition load_balanced_partition(std::span<const std::int64_t> work, int ranks) {
     const int planes = static_cast<int>(work.size());
-    Cut cut = cut_of(planes, ranks);
+    Partition cut = equal_partition(planes, ranks);
     if (ranks == 1) return cut;
     int unit = 8;
     while (unit > 1 && planes / unit < ranks) unit /= 2;
@@ -42,7 +42,7 @@ inline Cut load_balanced_cut(std::span<const std::int64_t> work, int ranks) {
 }
 
 /// The work of the rank that has the most.
-inline std::int64_t largest_share(std::span<const std::int64_t> work, const Cut& cut) {
+inline std::int64_t largest_share(std::span<const std::int64_t> work, const Partition& cut) {
     std::int64_t most = 0;
     for (int r = 0; r < cut.ranks(); ++r) {
         const auto own =
@@ -53,25 +53,25 @@ inline std::int64_t largest_share(std::span<const std::int64_t> work, const Cut&
 }
 
 namespace detail {
-inline const Cut* scope_cut = nullptr;
+inline const Partition* scope_cut = nullptr;
 }
 
 /// Scope in which new solvers use this partition. The caller knows the work of the planes; all ranks must pass the same partition.
 class PartitionScope {
 public:
-    explicit PartitionScope(const Cut& cut) : before_(detail::scope_cut) { detail::scope_cut = &cut; }
+    explicit PartitionScope(const Partition& cut) : before_(detail::scope_cut) { detail::scope_cut = &cut; }
     ~PartitionScope() { detail::scope_cut = before_; }
     PartitionScope(const PartitionScope&) = delete;
     PartitionScope& operator=(const PartitionScope&) = delete;
 
 private:
-    const Cut* before_;
+    const Partition* before_;
 };
 
 /// The partition of the scope above; without one, equal numbers of planes for all ranks.
-inline Cut cut_in_scope(int planes) {
+inline Partition partition_in_scope(int planes) {
     if (detail::scope_cut && !detail::scope_cut->empty() && detail::scope_cut->planes() == planes) return *detail::scope_cut;
-    return cut_of(planes, communicator().ranks());
+    return equal_partition(planes, communicator().ranks());
 }
 
 }  // namespace weir

@@ -10,7 +10,7 @@
 namespace weir {
 
 /// The rank that owns a plane of cells. The last plane of faces belongs to the last rank.
-inline int owner_of(const Cut& cut, int plane) {
+inline int owner_of(const Partition& cut, int plane) {
     int rank = 0;
     while (rank + 1 < cut.ranks() && plane >= cut.begin(rank + 1)) ++rank;
     return rank;

@@ -6,7 +6,7 @@
 namespace weir {
 
 /// Partition of the planes of cells along the slowest axis: rank r owns [at[r], at[r + 1]). Empty: there is one rank.
-struct Cut {
+struct Partition {
     std::vector<int> at{};
 
     bool empty() const { return at.empty(); }
@@ -16,13 +16,13 @@ struct Cut {
     /// End of a rank's planes in an array of `count` planes: the last rank also owns those beyond the cells, such as the last plane of
     /// faces.
     int end(int rank, int count) const { return rank + 1 == ranks() ? count : at[static_cast<std::size_t>(rank) + 1]; }
-    bool operator==(const Cut&) const = default;
+    bool operator==(const Partition&) const = default;
 };
 
 /// Communicator as equal as multiples of 8 planes allow, so that three coarser multigrid levels have matching boundaries; multiples of less
 /// where there are few planes. One rank gets no partition. There must be at least one plane per rank.
-inline Cut cut_of(int planes, int ranks) {
-    Cut cut;
+inline Partition equal_partition(int planes, int ranks) {
+    Partition cut;
     if (ranks == 1) return cut;
     int unit = 8;
     while (unit > 1 && planes / unit < ranks) unit /= 2;
@@ -40,7 +40,7 @@ struct PlaneRange {
 
 /// The planes of an array of `count` planes that rank `to` receives from rank `from` to fill `ghost_planes` planes on both sides. `ring`:
 /// also around the ends of a periodic axis, where plane n of faces is plane 0.
-inline std::vector<PlaneRange> halo_from(const Cut& cut, int from, int to, int count, int ghost_planes, bool ring) {
+inline std::vector<PlaneRange> halo_from(const Partition& cut, int from, int to, int count, int ghost_planes, bool ring) {
     const int n = cut.planes(), begin = cut.begin(to), end = cut.end(to, n);
     std::vector<char> wanted(static_cast<std::size_t>(count), 0);
     const auto want = [&](int plane) {

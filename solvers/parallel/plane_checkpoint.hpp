@@ -11,8 +11,9 @@ namespace detail {
 /// The offset and number of the entries of this rank's planes in an array of distributed storage.
 template <class T, int D>
 std::array<std::size_t, 2> own_entries(const Grid<T, D>& q) {
-    const Cut& cut = *own_share.cut;
-    const int rank = communicator().rank(), begin = cut.begin(rank), end = cut.end(rank, q.extent()[D - 1]);
+    const Slab& slab = *q.extent().own.slab;
+    const Partition& cut = slab.partition();
+    const int rank = slab.rank(), begin = cut.begin(rank), end = cut.end(rank, q.extent()[D - 1]);
     const auto plane = static_cast<std::size_t>(q.stride(D - 1));
     return {static_cast<std::size_t>(begin) * plane, static_cast<std::size_t>(end - begin) * plane};
 }

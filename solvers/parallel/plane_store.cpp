@@ -45,7 +45,7 @@ void Reserved::close(std::size_t begin, std::size_t end) {
     mprotect(data_ + begin, end - begin, PROT_NONE);
 }
 
-std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int ghost_planes, bool ring) {
+std::vector<char> planes_held(const Partition& cut, int rank, int count, int margin, int ghost_planes, bool ring) {
     const int n = cut.planes(), begin = cut.begin(rank) - std::min(ghost_planes, n), end = cut.end(rank, n) + std::min(ghost_planes, n);
     std::vector<char> held(static_cast<std::size_t>(count + 2 * margin), 0);
     const auto hold = [&](int plane) {
@@ -61,10 +61,10 @@ std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, i
     return held;
 }
 
-std::vector<char> planes_near(int count, int ghost_planes, bool ring) {
-    if (!is_distributed()) return {};
-    const Cut& cut = *detail::own_share.cut;
-    const int n = cut.planes(), rank = communicator().rank();
+std::vector<char> planes_near(const Slab* slab, int count, int ghost_planes, bool ring) {
+    if (slab == nullptr) return {};
+    const Partition& cut = slab->partition();
+    const int n = cut.planes(), rank = slab->rank();
     std::vector<char> near(static_cast<std::size_t>(count), 0);
     ghost_planes = std::min(ghost_planes, n);
     for (int plane = cut.begin(rank) - ghost_planes; plane < cut.end(rank, count) + ghost_planes; ++plane) {

@@ -1,4 +1,4 @@
-// Memory of an array of planes. With one rank it is a vector. With distributed storage (OwnPlanes) it is address space for the whole array,
+// Memory of an array of planes. With one rank it is a vector. With distributed storage (parallel/slab.hpp) it is address space for the whole array,
 // with memory only for this rank's planes and its ghost planes. Every index then means the same on all ranks, and an access to any other
 // plane faults (as in sparse grids: Setaluri, Aanjaneya, Bauer & Sifakis 2014).
 #pragma once
@@ -33,26 +33,21 @@ private:
 
 /// Which planes of an array a rank stores: its own, `ghost_planes` planes on both sides, also around a periodic axis, and the planes beyond
 /// the ends of the axis that the ghosts reach. `margin`: planes before the first and after the last. Entry 0 is plane -margin.
-std::vector<char> planes_held(const Cut& cut, int rank, int count, int margin, int ghost_planes, bool ring);
+std::vector<char> planes_held(const Partition& cut, int rank, int count, int margin, int ghost_planes, bool ring);
 
-/// Marks, of `count` planes, this rank's and `ghost_planes` planes on both sides, also around the ends of a periodic axis. Empty with one
-/// rank: all planes are near.
-std::vector<char> planes_near(int count, int ghost_planes, bool ring);
-
-namespace detail {
-/// Returns whether an array of this many planes that is constructed now has distributed storage.
-inline bool makes_window(int count) {
-    const OwnShare& share = own_share;
-    return share.kept > 0 && share.cut != nullptr && (count == share.cut->planes() || count == share.cut->planes() + 1);
-}
-}  // namespace detail
+/// Marks, of `count` planes, this rank's and `ghost_planes` planes on both sides, also around the ends of a periodic axis. Empty without a
+/// slab: all planes are near.
+std::vector<char> planes_near(const Slab* slab, int count, int ghost_planes, bool ring);
 
 template <class T>
 class PlaneStore {
 public:
     PlaneStore() = default;
-    /// `head` entries stored on all ranks, `margin` planes, `count` planes, `margin` more.
-    PlaneStore(std::size_t head, std::size_t plane, int count, int margin, const T& value) { make(head, plane, count, margin, value); }
+    /// `head` entries stored on all ranks, `margin` planes, `count` planes, `margin` more. Stored whole without a slab, or where `count` is
+    /// the number neither of its planes of cells nor of its planes of faces.
+    PlaneStore(const Slab* slab, std::size_t head, std::size_t plane, int count, int margin, const T& value) {
+        make(slab, head, plane, count, margin, value);
+    }
     PlaneStore(const PlaneStore& other) { copy(other); }
     PlaneStore(PlaneStore&& other) noexcept { swap(other); }
     PlaneStore& operator=(const PlaneStore& other) {
@@ -88,7 +83,7 @@ public:
     void open(int ghost_planes, bool ring) {
         if (!window_ || (ghost_planes <= window_->ghost_planes && (window_->ring || !ring))) return;
         window_->ghost_planes = std::max(ghost_planes, window_->ghost_planes), window_->ring = window_->ring || ring;
-        open(planes_held(*detail::own_share.cut, communicator().rank(), window_->count, window_->margin, window_->ghost_planes,
+        open(planes_held(window_->slab->partition(), window_->slab->rank(), window_->count, window_->margin, window_->ghost_planes,
                          window_->ring));
     }
     void open_all() {
@@ -98,7 +93,7 @@ public:
     void close() {
         if (!window_) return;
         Window& w = *window_;
-        const auto kept = planes_held(*detail::own_share.cut, communicator().rank(), w.count, w.margin, w.ghost_planes, w.ring);
+        const auto kept = planes_held(w.slab->partition(), w.slab->rank(), w.count, w.margin, w.ghost_planes, w.ring);
         for (std::size_t k = 0, end = 0; k < kept.size(); k = end) {
             for (end = k + 1; end < kept.size() && kept[end] == kept[k];) ++end;
             if (kept[k] == 0) w.memory.close(w.at(k), w.at(end));
@@ -117,11 +112,12 @@ public:
         std::swap(size_, other.size_);
     }
     /// As the constructor; memory that fits is reused with its contents.
-    void resize(std::size_t head, std::size_t plane, int count, int margin) {
+    void resize(const Slab* slab, std::size_t head, std::size_t plane, int count, int margin) {
         const std::size_t size = head + plane * static_cast<std::size_t>(count + 2 * margin);
-        if (detail::makes_window(count)) {
-            const bool same = window_ && size == size_ && window_->head == head && window_->plane == plane && window_->margin == margin;
-            if (!same) make(head, plane, count, margin, T{});
+        if (makes_window(slab, count)) {
+            const bool same = window_ && window_->slab == slab && size == size_ && window_->head == head && window_->plane == plane &&
+                              window_->margin == margin;
+            if (!same) make(slab, head, plane, count, margin, T{});
             return;
         }
         window_.reset();
@@ -133,6 +129,7 @@ private:
     struct Window {
         Window(std::size_t bytes) : memory(bytes) {}
         Reserved memory;
+        const Slab* slab = nullptr;
         std::size_t head = 0, plane = 0;
         int count = 0, margin = 0, ghost_planes = -1;
         bool ring = false;
@@ -140,22 +137,27 @@ private:
         std::size_t at(std::size_t plane_from_margin) const { return (head + plane_from_margin * plane) * sizeof(T); }
     };
 
-    void make(std::size_t head, std::size_t plane, int count, int margin, const T& value) {
+    static bool makes_window(const Slab* slab, int count) {
+        if (slab == nullptr || !slab->distributed_storage()) return false;
+        return count == slab->partition().planes() || count == slab->partition().planes() + 1;
+    }
+    void make(const Slab* slab, std::size_t head, std::size_t plane, int count, int margin, const T& value) {
         size_ = head + plane * static_cast<std::size_t>(count + 2 * margin);
-        if (!detail::makes_window(count)) {
+        if (!makes_window(slab, count)) {
             window_.reset();
             whole_.assign(size_, value);
             data_ = whole_.data();
             return;
         }
         whole_ = {};
-        reserve(head, plane, count, margin);
+        reserve(slab, head, plane, count, margin);
         window_->memory.open(0, head * sizeof(T));
-        open(detail::own_share.kept, detail::own_share.ring);
+        open(slab->ghost_planes(), slab->ring());
         fill(value);
     }
-    void reserve(std::size_t head, std::size_t plane, int count, int margin) {
+    void reserve(const Slab* slab, std::size_t head, std::size_t plane, int count, int margin) {
         window_ = std::make_unique<Window>(size_ * sizeof(T));
+        window_->slab = slab;
         window_->head = head, window_->plane = plane, window_->count = count, window_->margin = margin;
         window_->held.assign(static_cast<std::size_t>(count + 2 * margin), 0);
         data_ = reinterpret_cast<T*>(window_->memory.data());
@@ -184,12 +186,12 @@ private:
             return;
         }
         const Window& from = *other.window_;
-        const bool fits =
-            window_ && size_ == other.size_ && window_->head == from.head && window_->plane == from.plane && window_->margin == from.margin;
+        const bool fits = window_ && window_->slab == from.slab && size_ == other.size_ && window_->head == from.head &&
+                          window_->plane == from.plane && window_->margin == from.margin;
         if (!fits) {
             whole_ = {};
             size_ = other.size_;
-            reserve(from.head, from.plane, from.count, from.margin);
+            reserve(from.slab, from.head, from.plane, from.count, from.margin);
             window_->memory.open(0, from.head * sizeof(T));
         }
         window_->ghost_planes = std::max(window_->ghost_planes, from.ghost_planes), window_->ring = window_->ring || from.ring;

@@ -39,8 +39,8 @@ struct StepTraffic {
 class Tally {
 public:
     /// `ring`: also around the ends of the axis.
-    Tally(Cut cut, int rank, bool ring = false) : cut_(std::move(cut)), rank_(rank), ring_(ring) {}
-    const Cut& cut() const { return cut_; }
+    Tally(Partition cut, int rank, bool ring = false) : cut_(std::move(cut)), rank_(rank), ring_(ring) {}
+    const Partition& cut() const { return cut_; }
     int rank() const { return rank_; }
     StepTraffic& sent() { return sent_; }
 
@@ -52,7 +52,7 @@ public:
         refresh(std::span(arrays.begin(), arrays.size()), ghost_planes, times);
     }
     /// For arrays with another partition: the levels of a multigrid.
-    void refresh(const Cut& cut, bool ring, std::span<const PlaneSize> arrays, int ghost_planes, std::int64_t times) {
+    void refresh(const Partition& cut, bool ring, std::span<const PlaneSize> arrays, int ghost_planes, std::int64_t times) {
         for (int peer = 0; peer < cut.ranks(); ++peer) {
             if (peer == rank_) continue;
             std::int64_t bytes = 0;
@@ -65,7 +65,7 @@ public:
     }
     /// Counts Communicator::gather: an all-gather of this rank's own planes.
     void gather(const PlaneSize& array, std::int64_t times = 1) { gather(cut_, array, times); }
-    void gather(const Cut& cut, const PlaneSize& array, std::int64_t times) {
+    void gather(const Partition& cut, const PlaneSize& array, std::int64_t times) {
         everywhere(array.bytes * static_cast<std::size_t>(cut.end(rank_, array.count) - cut.begin(rank_)), times,
                    array.bytes * static_cast<std::size_t>(array.count));
     }
@@ -82,7 +82,7 @@ public:
 
 private:
     static void add(Traffic& to, std::int64_t bytes, std::int64_t times) { to.messages += times, to.bytes += bytes * times; }
-    Cut cut_;
+    Partition cut_;
     int rank_;
     bool ring_;
     StepTraffic sent_;
@@ -93,7 +93,7 @@ inline void tally_run(Tally& tally) { tally.everywhere(sizeof(int), 2, sizeof(in
 
 /// The cells of a scene and the rank within its partition: the arguments of the estimates.
 struct RankOf {
-    Cut cut{};  // empty where particles are replicated
+    Partition cut{};  // empty where particles are replicated
     int rank = 0, ranks = 1;
 };
 

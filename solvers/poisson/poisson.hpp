@@ -104,7 +104,7 @@ std::unique_ptr<Solver<D>> make_solver(std::string_view method, const Options& o
 
 /// In parallel: returns whether "multigrid" distributes the planes of such a grid with this partition, for any cell flags.
 template <int D>
-bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut);
+bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Partition& cut);
 
 /// r = b − A p in double precision on fluid cells, zero elsewhere; b is used without removing its mean.
 template <int D>

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace weir {
-struct Cut;  // parallel/partition.hpp
+struct Partition;  // parallel/partition.hpp
 struct RankOf;
 struct StepShape;
 struct StepTraffic;  // parallel/traffic.hpp
@@ -36,13 +36,13 @@ struct ParallelSupport {
     /// What is distributed over the ranks.
     Shared shared = Shared::by_planes;
     /// The replicated work of a step of this scene with this partition; an empty list, or no function: none.
-    std::function<ReplicatedWorks(const Scene&, const Cut&)> replicated_work{};
+    std::function<ReplicatedWorks(const Scene&, const Partition&)> replicated_work{};
     /// Returns whether a scene with this partition has distributed storage. Empty: all ranks store everything.
-    std::function<bool(const Scene&, const Cut&)> distributed_storage{};
+    std::function<bool(const Scene&, const Partition&)> distributed_storage{};
     /// Estimate of what a rank sends in such a step. Empty: unknown.
     std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> traffic{};
-    /// The partition of a scene's planes among `ranks` ranks; an empty one: replicated work. No function: the equal parts of cut_of.
-    std::function<Cut(const Scene&, int ranks)> partition{};
+    /// The partition of a scene's planes among `ranks` ranks; an empty one: replicated work. No function: the equal parts of equal_partition.
+    std::function<Partition(const Scene&, int ranks)> partition{};
     /// The work of a step per plane of the slowest axis, in any unit: at the start of a scene, or for a state (collective). Empty: equal
     /// for all planes.
     std::function<std::vector<std::int64_t>(const Scene&, const Checkpoint*)> work_of_planes{};

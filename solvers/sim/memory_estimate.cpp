@@ -394,7 +394,7 @@ std::vector<double> parts_of_planes(const scene::Scene& scene, const std::vector
     return parts;
 }
 
-double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<double>& parts) {
+double bytes_of_rank(double bytes, const Partition& cut, int rank, const std::vector<double>& parts) {
     const bool first = rank == 0, last = rank + 1 == cut.ranks();
     constexpr int near = static_cast<int>(planes_near_cuts), more = (near + 1) / 2;
     const int begin = std::max(0, cut.begin(rank) - (first ? 0 : last ? more : near - more));

@@ -66,7 +66,7 @@ inline constexpr double planes_near_cuts = 9;
 /// one with half the liquid. Empty: all planes are equal.
 std::vector<double> parts_of_planes(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds);
 /// The part of the memory of one process that a rank needs with distributed storage: its own planes and its ghost planes.
-double bytes_of_rank(double bytes, const Cut& cut, int rank, const std::vector<double>& parts);
+double bytes_of_rank(double bytes, const Partition& cut, int rank, const std::vector<double>& parts);
 
 /// The same for making output.surface: the planes of samples that the rank owns and the ghost particles that it reads.
 double surface_bytes_of_rank(const scene::Scene& scene, const MemoryEstimate& estimate, int rank, int ranks);

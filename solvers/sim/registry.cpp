@@ -75,9 +75,9 @@ Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& 
     if (kind.parallel.partition)
         shares.cut = kind.parallel.partition(scene, ranks);
     else if (kind.parallel.work_of_planes)
-        shares.cut = load_balanced_cut(kind.parallel.work_of_planes(scene, nullptr), ranks);
+        shares.cut = load_balanced_partition(kind.parallel.work_of_planes(scene, nullptr), ranks);
     else
-        shares.cut = cut_of(planes_of(scene), ranks);
+        shares.cut = equal_partition(planes_of(scene), ranks);
     if (shares.cut.empty())
         shares.replicated_work = {scene::ReplicatedWork::everything};
     else if (kind.parallel.replicated_work)

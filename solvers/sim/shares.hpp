@@ -11,7 +11,7 @@ namespace weir::sim {
 /// The part of each rank at the start of a scene, as text and as an argument for solvers.
 struct Shares {
     scene::Shared shared = scene::Shared::by_planes;
-    Cut cut{};  // of planes; empty for one rank, for shared particles (their partition moves with them), and for replicated work
+    Partition cut{};  // of planes; empty for one rank, for shared particles (their partition moves with them), and for replicated work
     scene::ReplicatedWorks replicated_work{};
     bool nothing_shared() const { return shared == scene::Shared::by_planes && cut.empty(); }
 };

@@ -111,7 +111,7 @@ int threads_for(const scene::Scene& scene) {
     return weir::threads();
 }
 
-std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Cut& cut) {
+std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Partition& cut) {
     const ProblemSizeScope size(cells_of(scene));
     const PartitionScope partition(cut);
     return kind.make(scene);
@@ -218,21 +218,21 @@ void Simulation::replace(std::unique_ptr<Solver> solver) {
 }
 
 /// Empty where the present partition is good enough.
-Cut Simulation::balanced_cut(const Checkpoint& state) const {
-    const Cut& present = shares_->cut;
+Partition Simulation::balanced_partition(const Checkpoint& state) const {
+    const Partition& present = shares_->cut;
     if (present.empty() || !kind_.parallel.work_of_planes) return {};
     constexpr double worth = 0.9;  // the solver is rebuilt for it, which takes as long as some steps
     const auto work = kind_.parallel.work_of_planes(scene_, &state);
     if (static_cast<int>(work.size()) != present.planes()) return {};  // of another scene, which the solver rejects
-    Cut cut = load_balanced_cut(work, present.ranks());
-    const auto most = [&](const Cut& c) { return static_cast<double>(largest_share(work, c)); };
-    return most(cut) < worth * most(present) ? cut : Cut{};
+    Partition cut = load_balanced_partition(work, present.ranks());
+    const auto most = [&](const Partition& c) { return static_cast<double>(largest_share(work, c)); };
+    return most(cut) < worth * most(present) ? cut : Partition{};
 }
 
-bool Simulation::needs_repartition(const Checkpoint& state) const { return !balanced_cut(state).empty(); }
+bool Simulation::needs_repartition(const Checkpoint& state) const { return !balanced_partition(state).empty(); }
 
 void Simulation::repartition(const Checkpoint& state) {
-    Cut cut = balanced_cut(state);
+    Partition cut = balanced_partition(state);
     if (cut.empty()) return;
     probes_.keep(*solver_);
     std::unique_ptr<Solver> solver = make_solver(scene_, kind_, cut);
@@ -443,7 +443,7 @@ void Simulation::restore(const Checkpoint& from) {
     try {
         require_same_domain(scene_, from);
         resume_changes(from);
-        if (Cut cut = balanced_cut(from); !cut.empty()) {
+        if (Partition cut = balanced_partition(from); !cut.empty()) {
             solver_ = make_solver(scene_, kind_, cut);
             shares_->cut = std::move(cut);
         }

@@ -145,7 +145,7 @@ private:
     void read_times();
     void steer(const scene::Override& change);
     void meet_changes();
-    Cut balanced_cut(const Checkpoint& state) const;
+    Partition balanced_partition(const Checkpoint& state) const;
     void replace(std::unique_ptr<Solver> solver);
     void resume_changes(const Checkpoint& from);
     real wanted_dt(real target) const;

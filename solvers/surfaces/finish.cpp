@@ -33,7 +33,7 @@ struct Neighbours {
 };
 
 /// Halo exchange of the points of the layers adjacent to this rank's.
-void exchange_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut& cut) {
+void exchange_points(std::vector<Vec<3>>& points, const Piece& piece, const Partition& cut) {
     const auto [begin, end] = layers_of(cut, communicator().rank());
     if (begin == end) return;
     std::vector<Message> messages;
@@ -49,7 +49,7 @@ void exchange_points(std::vector<Vec<3>>& points, const Piece& piece, const Cut&
 
 }  // namespace
 
-void smooth(SurfaceMesh& mesh, const Piece& piece, const std::vector<real>& weight, int passes, const Cut& cut) {
+void smooth(SurfaceMesh& mesh, const Piece& piece, const std::vector<real>& weight, int passes, const Partition& cut) {
     if (passes == 0) return;
     const Neighbours around(mesh);
     std::vector<Vec<3>> moved = mesh.points;
@@ -126,7 +126,7 @@ struct Arrived {
 };
 
 /// Rays that leave this rank's layers migrate from owner to owner; the results are sent back.
-void go_on_elsewhere(const std::vector<Ray>& left, const March& march, const Cut& cut, std::vector<real>& thickness) {
+void go_on_elsewhere(const std::vector<Ray>& left, const March& march, const Partition& cut, std::vector<real>& thickness) {
     const auto ranks = static_cast<std::size_t>(cut.ranks());
     ListsOfRanks<Ray> leaving(ranks);
     const auto leave = [&](const Ray& ray) {
@@ -148,7 +148,7 @@ void go_on_elsewhere(const std::vector<Ray>& left, const March& march, const Cut
 
 }  // namespace
 
-void add_thickness(SurfaceMesh& mesh, const Piece& piece, const Samples& samples, const Cut& cut) {
+void add_thickness(SurfaceMesh& mesh, const Piece& piece, const Samples& samples, const Partition& cut) {
     mesh.thickness.assign(mesh.points.size(), 0);
     const March march{samples};
     std::vector<Ray> left;

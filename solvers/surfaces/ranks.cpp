@@ -14,10 +14,10 @@ void Reconstruction::cut_by_planes(const FieldSet& fields) {
     const auto axis = static_cast<std::size_t>(samples_.slowest());
     const int planes = samples_.n[axis];
     if (!fields.cut) {
-        cut_ = cut_of(planes, communicator().ranks());
+        cut_ = equal_partition(planes, communicator().ranks());
         return;
     }
-    const Cut& grid = *fields.cut;
+    const Partition& grid = *fields.cut;
     cut_.at = {0};
     for (int rank = 1; rank < grid.ranks(); ++rank) {
         const real x = fields.grid.origin[axis] + fields.grid.spacing[axis] * grid.begin(rank);
@@ -36,7 +36,7 @@ void Reconstruction::cut_by_particles(const Components& position) {
     for (const real x : position[axis]) ++own[samples_.between(axis, x).low];
     const std::vector<std::int64_t> all = of_all_ranks(own);
     for (std::size_t i = 0; i < all.size(); ++i) work[i % work.size()] += all[i];
-    cut_ = planes < ranks ? cut_of(planes, ranks) : load_balanced_cut(work, ranks);
+    cut_ = planes < ranks ? equal_partition(planes, ranks) : load_balanced_partition(work, ranks);
 }
 
 /// Sends particles to the ranks that read their cells or the cells of their images.

@@ -60,7 +60,7 @@ private:
     geometry::Solids<2> flat_solids_;
     geometry::Solids<3> solids_;
     bool in_parts_ = false;
-    Cut cut_;  // of the lattice's planes, in parallel
+    Partition cut_;  // of the lattice's planes, in parallel
     Cloud cloud_;
     Components velocity_;         // of the cloud's particles, if any
     ReceivedParticles received_;  // in parallel, the storage of these

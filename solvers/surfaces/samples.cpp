@@ -8,7 +8,7 @@ namespace {
 constexpr int beyond = 2;  // ghost planes on each side: the neighbours of points in the first and last layer
 }
 
-void Samples::make_room(const Cut& cut) {
+void Samples::make_room(const Partition& cut) {
     const int count = n[static_cast<std::size_t>(slowest())];
     if (cut.empty()) {
         depth.resize(0, plane(), count, 0);
@@ -22,7 +22,7 @@ void Samples::make_room(const Cut& cut) {
     held = {std::max(0, own.begin - beyond), std::min(count, own.end + beyond)};
 }
 
-void Samples::exchange(const Cut& cut) {
+void Samples::exchange(const Partition& cut) {
     if (cut.empty()) return;
     communicator().refresh(cut, {depth.data(), plane() * sizeof(float), n[static_cast<std::size_t>(slowest())], 0, depth.held()}, beyond,
                            false);

@@ -11,7 +11,7 @@
 namespace weir::surfaces {
 
 /// The layers that a rank owns, for this partition of the lattice's planes: layer k lies between plane k and the next.
-inline PlaneRange layers_of(const Cut& cut, int rank) {
+inline PlaneRange layers_of(const Partition& cut, int rank) {
     return {std::min(cut.begin(rank), cut.planes() - 1), std::min(cut.end(rank, cut.planes()), cut.planes() - 1)};
 }
 
@@ -25,9 +25,9 @@ struct Samples {
     PlaneRange own{0, 0}, held{0, 0}, layers{0, 0};
 
     /// Allocates all of them; in parallel, with this partition, those that this rank stores.
-    void make_room(const Cut& cut = {});
+    void make_room(const Partition& cut = {});
     /// In parallel: fills the ghost planes from their owners.
-    void exchange(const Cut& cut);
+    void exchange(const Partition& cut);
     /// In 3D z, for a plane of samples y.
     int slowest() const { return n[2] > 1 ? 2 : 1; }
     std::size_t plane() const { return static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(slowest() == 2 ? n[1] : 1); }

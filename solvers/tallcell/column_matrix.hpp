@@ -28,7 +28,7 @@ struct ColumnPlaces {
     std::array<int, 2> n{1, 1};      // columns along the horizontal axes
     std::array<bool, 2> periodic{};  // of these axes
     int rows = 0;                    // number of shared rows
-    Cut cut;                         // in parallel, the partition of lines; empty for replicated work
+    Partition cut;                         // in parallel, the partition of lines; empty for replicated work
 
     static constexpr int block = 8192;  // entries of a line summed together
     static constexpr int no_line = -1;  // index of the line of zeros

@@ -99,12 +99,12 @@ scene::SolverKind kind() {
          "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
         {.check = check_parallel,
          .replicated_work =
-             [](const scene::Scene&, const Cut&) {
+             [](const scene::Scene&, const Partition&) {
                  return scene::ReplicatedWorks{scene::ReplicatedWork::small_pressure_levels, scene::ReplicatedWork::level_set_in_solids};
              },
          .distributed_storage = holds_own_planes,
          .traffic = traffic_of_step,
-         .partition = cut_of_columns}};
+         .partition = partition_of_columns}};
 }
 
 }  // namespace weir::tallcell

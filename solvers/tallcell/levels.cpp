@@ -25,13 +25,13 @@ void ColumnMultigrid::setup(const ColumnMatrix& finest) {
 }
 
 /// Returns whether a level is distributed with this partition of its lines: it is large enough, and no parent has children on two ranks.
-bool worth_sharing(const ColumnPlaces& places, const Cut& cut) {
+bool worth_sharing(const ColumnPlaces& places, const Partition& cut) {
     constexpr std::size_t small_level = 20000;  // as in poisson's multigrid
     const bool whole_pairs = std::all_of(cut.at.begin(), cut.at.end(), [&](int z) { return z % 2 == 0 || z == places.n[1]; });
     return whole_pairs && at(places.n[0]) * at(places.n[1]) * at(places.rows) >= small_level;
 }
 
-Cut halved(Cut cut) {
+Partition halved(Partition cut) {
     for (int& z : cut.at) z = (z + 1) / 2;
     return cut;
 }

@@ -16,8 +16,8 @@
 namespace weir::tallcell {
 
 /// Returns whether a level is distributed with this partition of its lines.
-bool worth_sharing(const ColumnPlaces& places, const Cut& cut);
-Cut halved(Cut cut);
+bool worth_sharing(const ColumnPlaces& places, const Partition& cut);
+Partition halved(Partition cut);
 
 class ColumnMultigrid {
 public:

@@ -4,15 +4,15 @@
 
 namespace weir::tallcell {
 
-Cut cut_of_columns(const scene::Scene& scene, int ranks) {
+Partition partition_of_columns(const scene::Scene& scene, int ranks) {
     if (scene.dim() == 2 || up_axis<3>(gravity_of<3>(scene)) == 2) return {};
     const int lines = scene.index<3>("grid.cells")[2];
     const bool pairs = lines >= 2 * ranks;  // pairs of lines are one line on the next multigrid level: each rank gets at least one pair,
                                             // otherwise work is replicated
-    return lines >= ranks && !pairs ? Cut{} : cut_of(lines, ranks);
+    return lines >= ranks && !pairs ? Partition{} : equal_partition(lines, ranks);
 }
 
-bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !communicator().holds_whole(); }
+bool holds_own_planes(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
 /// Halo exchange of the velocity, as deep as the motion of the step plus the two samples at the end of a trajectory; runs of one ghost line
 /// move too.

@@ -21,9 +21,9 @@ namespace weir::tallcell {
 scene::SolverKind kind();
 
 /// In parallel, the partition of a scene's planes: empty where columns run along the slowest axis and so pass through all planes.
-Cut cut_of_columns(const scene::Scene& scene, int ranks);
+Partition partition_of_columns(const scene::Scene& scene, int ranks);
 /// Returns whether fields can have distributed storage: not where whole fields are read on all ranks.
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
+bool holds_own_planes(const scene::Scene& scene, const Partition& cut);
 /// Estimate of what a rank sends in a step of a scene with this partition.
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
 

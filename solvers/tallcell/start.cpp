@@ -14,7 +14,7 @@ namespace {
 /// Depth of the velocity's halo: the motion of a step plus the interpolation stencil.
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, real cfl) {
-    const Cut cut = cut_of_columns(scene, communicator().ranks());
+    const Partition cut = partition_of_columns(scene, communicator().ranks());
     return HeldPlanes(cut, holds_own_planes(scene, cut), static_cast<int>(std::ceil(cfl)) + 3, geometry::Sides<D>(scene).periodic(D - 1));
 }
 

@@ -61,7 +61,7 @@ std::vector<std::string> not_counted(const scene::Scene& scene) {
 }  // namespace
 
 StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
-    const Cut cut = cut_of_columns(scene, of.ranks);
+    const Partition cut = partition_of_columns(scene, of.ranks);
     if (cut.empty()) {  // replicated work
         Tally tally(of.cut, of.rank);
         tally_run(tally);

@@ -100,7 +100,7 @@ scene::SolverKind kind() {
              "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},
             {.check = check_parallel,
              .replicated_work =
-                 [](const scene::Scene& scene, const Cut& cut) {
+                 [](const scene::Scene& scene, const Partition& cut) {
                      auto works = mac::replicated_pressure(scene, cut);
                      works.push_back(scene::ReplicatedWork::level_set_in_solids);
                      return works;

@@ -203,7 +203,7 @@ StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const S
     const int sums = 1 + (sideways ? 5 : 0) + (waves.flag("velocity") ? 3 * (box.ny() > 1 ? 1 + box.ny() : 1) : 0);
     const int count = sea ? HalfPlane{box.nx(), box.nz()}.columns() : box.nx();
     const std::size_t each = sea ? sizeof(Complex) : sizeof(real);
-    const Cut columns = cut_of_columns(count, of.ranks);
+    const Partition columns = partition_of_columns(count, of.ranks);
     const auto own = static_cast<std::size_t>(columns.end(of.rank, count) - columns.begin(of.rank));
     for (int peer = 0; peer < of.ranks; ++peer)
         if (peer != of.rank) tally.message(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * each, sums);
@@ -230,12 +230,12 @@ scene::SolverKind kind() {
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},
             {.check = check_parallel,
              .replicated_work =
-                 [](const scene::Scene& scene, const Cut&) {
+                 [](const scene::Scene& scene, const Partition&) {
                      return scene.dim() == 2 ? scene::ReplicatedWorks{scene::ReplicatedWork::surface_row} : scene::ReplicatedWorks{};
                  },
              .distributed_storage = holds_own_planes,
              .traffic = traffic_of_step,
-             .partition = [](const scene::Scene& scene, int ranks) { return cut_of_box(Box(scene), ranks); }}};
+             .partition = [](const scene::Scene& scene, int ranks) { return partition_of_box(Box(scene), ranks); }}};
 }
 
 }  // namespace weir::waves

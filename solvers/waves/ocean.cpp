@@ -116,7 +116,7 @@ void Ocean::set_amplitudes() {
             if (!along_.empty()) along_[at] = reach(w.k, 0, sea_.spectrum.depth).along;
         }
     });
-    const Cut cut = plane_.whole() ? Cut{} : cut_of_columns(plane_.columns(), communicator().ranks());
+    const Partition cut = plane_.whole() ? Partition{} : partition_of_columns(plane_.columns(), communicator().ranks());
     const AllPlanes no_rows;
     const OwnPlanes mine(cut);
     const real variance = 2 * plane_sum(plane_.columns(), [&](int m) {  // a^2/2 = 2 |a/2|^2

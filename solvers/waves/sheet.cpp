@@ -13,9 +13,9 @@ Box::Box(const scene::Scene& scene) : dim(scene.dim()) {
     }
 }
 
-Cut cut_of_box(const Box& box, int ranks) {
+Partition partition_of_box(const Box& box, int ranks) {
     const int planes = box.dim == 3 ? box.nz() : box.ny();
-    return planes >= ranks ? cut_of(planes, ranks) : Cut{};
+    return planes >= ranks ? equal_partition(planes, ranks) : Partition{};
 }
 
 PlaneRange own_rows(const Box& box) {

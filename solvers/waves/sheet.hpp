@@ -40,7 +40,7 @@ struct Box {
 };
 
 /// In parallel: partition of the sheet's rows (z), in 2D of the layers of cells in the water (y); none where these are fewer than ranks.
-Cut cut_of_box(const Box& box, int ranks);
+Partition partition_of_box(const Box& box, int ranks);
 
 /// This rank's part: rows of the sheet (in 2D its single row is replicated), and layers of cells (in 3D all).
 PlaneRange own_rows(const Box& box);

@@ -9,12 +9,12 @@
 
 namespace weir::waves {
 
-bool holds_own_planes(const scene::Scene&, const Cut& cut) { return !cut.empty() && !communicator().holds_whole(); }
+bool holds_own_planes(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
 namespace {
 
 HeldPlanes held_planes(const scene::Scene& scene, const Box& box) {
-    const Cut cut = cut_of_box(box, communicator().ranks());
+    const Partition cut = partition_of_box(box, communicator().ranks());
     return HeldPlanes(cut, holds_own_planes(scene, cut), 1, false);
 }
 

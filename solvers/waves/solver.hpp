@@ -12,7 +12,7 @@
 namespace weir::waves {
 
 /// In parallel: returns whether fields can have distributed storage: not where whole fields are read on all ranks.
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
+bool holds_own_planes(const scene::Scene& scene, const Partition& cut);
 
 class Waves final : public Solver {
 public:
@@ -53,7 +53,7 @@ private:
     bool shows_water() const { return box_.ny() > 1; }
 
     Box box_;
-    HeldPlanes held_;  // partitioned by cut_of_box
+    HeldPlanes held_;  // partitioned by partition_of_box
     std::unique_ptr<Model> model_;
     real level_, density_, g_, end_, time_ = 0;
     bool with_velocity_, gravity_, tension_;

@@ -26,7 +26,7 @@ Aligned<T> aligned(std::size_t count) {
 
 PlaneRange held_columns(int columns, int rows) {
     if (!parts_columns(rows)) return {0, columns};
-    const Cut cut = cut_of_columns(columns, communicator().ranks());
+    const Partition cut = partition_of_columns(columns, communicator().ranks());
     return {cut.begin(communicator().rank()), cut.end(communicator().rank(), columns)};
 }
 
@@ -36,7 +36,7 @@ Transposition<T>::Transposition(int columns, int rows, const PlaneRange& held)
       row_count_(rows),
       held_(held),
       length_(padded(rows)),
-      by_column_(cut_of_columns(columns, communicator().ranks())),
+      by_column_(partition_of_columns(columns, communicator().ranks())),
       columns_(aligned<T>(length_ * static_cast<std::size_t>(std::max(1, count(held))))) {}
 
 template <class T>

@@ -27,7 +27,7 @@ Aligned<T> aligned(std::size_t count);
 inline std::size_t padded(int n) { return (static_cast<std::size_t>(n) + 3) / 4 * 4; }
 
 /// The partition of columns.
-inline Cut cut_of_columns(int columns, int ranks) { return cut_of(columns, ranks); }
+inline Partition partition_of_columns(int columns, int ranks) { return equal_partition(columns, ranks); }
 /// Returns whether columns have distributed storage: where rows have.
 inline bool parts_columns(int rows) { return is_distributed() && detail::own_share.kept > 0 && rows > 1; }
 /// The columns that this rank stores.
@@ -85,7 +85,7 @@ private:
     bool transposes() const { return is_distributed() && row_count_ > 1; }
     PlaneRange columns_of(int rank) const { return {by_column_.begin(rank), by_column_.end(rank, column_count_)}; }
     PlaneRange rows_of(int rank) const {
-        const Cut& by_row = *detail::own_share.cut;
+        const Partition& by_row = *detail::own_share.cut;
         return {by_row.begin(rank), by_row.end(rank, row_count_)};
     }
     void make_room();
@@ -99,7 +99,7 @@ private:
     int column_count_, row_count_;
     PlaneRange held_;
     std::size_t length_;              // of a column
-    Cut by_column_;                   // in parallel: the partition of columns
+    Partition by_column_;                   // in parallel: the partition of columns
     std::vector<T> turned_, others_;  // a block for each other rank: of own columns, and of own rows
     Aligned<T> columns_;
 };

@@ -84,10 +84,10 @@ public:
     }
     bool poisons() const override { return poisons_; }
 
-    void refresh(const Cut& cut, std::span<const Planes> arrays, int ghost_planes, bool ring) override {
+    void refresh(const Partition& cut, std::span<const Planes> arrays, int ghost_planes, bool ring) override {
         for (const Planes& planes : arrays) refresh_one(cut, planes, ghost_planes, ring);
     }
-    void gather(const Cut&, const Planes&) override { throw std::logic_error("forked ranks gather no planes"); }
+    void gather(const Partition&, const Planes&) override { throw std::logic_error("forked ranks gather no planes"); }
 
 private:
     int socket_of(const Message& message) const { return peers_[static_cast<std::size_t>(message.peer)]; }
@@ -95,7 +95,7 @@ private:
         if (bytes > 0) done += static_cast<std::size_t>(bytes);
         if (bytes == 0 || (bytes < 0 && errno != EAGAIN && errno != EINTR)) throw std::runtime_error("another rank has ended");
     }
-    void refresh_one(const Cut& cut, const Planes& planes, int ghost_planes, bool ring) {
+    void refresh_one(const Partition& cut, const Planes& planes, int ghost_planes, bool ring) {
         const auto count = static_cast<std::size_t>(ranks());
         std::vector<std::vector<char>> sent(count), received(count);
         std::vector<Message> messages;

@@ -67,7 +67,7 @@ int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.r
 RankOf one_between(const scene::Scene& scene, const scene::SolverKind& kind, int ranks) {
     RankOf of{.rank = ranks / 2, .ranks = ranks};
     if (kind.parallel.shared == scene::Shared::by_planes)
-        of.cut = kind.parallel.partition ? kind.parallel.partition(scene, ranks) : cut_of(planes_of_scene(scene), ranks);
+        of.cut = kind.parallel.partition ? kind.parallel.partition(scene, ranks) : equal_partition(planes_of_scene(scene), ranks);
     return of;
 }
 

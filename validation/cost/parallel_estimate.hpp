@@ -29,7 +29,7 @@ struct ModelStep {
 
 struct ParallelEstimate {
     int ranks = 1;
-    Cut cut{};                    // empty where particles are shared
+    Partition cut{};                    // empty where particles are shared
     bool own_part = false;        // each holds its own planes alone
     bool nothing_shared = false;  // every rank does all of it
     scene::ReplicatedWorks replicated_work{};

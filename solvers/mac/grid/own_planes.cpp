@@ -13,11 +13,11 @@ const poisson::Method& method_of(const scene::Scene& scene) { return poisson::me
 
 }  // namespace
 
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut) {
+bool holds_own_planes(const scene::Scene& scene, const Partition& cut) {
     return !communicator().holds_whole() && could_hold_own_planes(scene, cut);
 }
 
-bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
+bool could_hold_own_planes(const scene::Scene& scene, const Partition& cut) {
     if (cut.empty()) return false;
     if (!method_of(scene).distributed_levels) return false;
     const auto shares = [&]<int D>() {
@@ -34,7 +34,7 @@ bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut) {
     return scene.dim() == 2 ? shares.operator()<2>() : shares.operator()<3>();
 }
 
-scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Cut& cut) {
+scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Partition& cut) {
     using scene::ReplicatedWork;
     if (could_hold_own_planes(scene, cut)) return {ReplicatedWork::small_pressure_levels};
     if (method_of(scene).distributed_levels) return {ReplicatedWork::pressure_levels};
@@ -43,7 +43,7 @@ scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Cut&
 
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach) {
-    const Cut cut = cut_in_scope(scene.index<D>("grid.cells")[D - 1]);
+    const Partition cut = partition_in_scope(scene.index<D>("grid.cells")[D - 1]);
     return HeldPlanes(cut, holds_own_planes(scene, cut), ghost_planes, geometry::Sides<D>(scene).periodic(D - 1), reach);
 }
 

@@ -11,11 +11,11 @@ namespace weir::mac {
 
 /// Returns whether fields have distributed storage: not where whole fields are read on all ranks, nor where the pressure solve is
 /// replicated.
-bool holds_own_planes(const scene::Scene& scene, const Cut& cut);
+bool holds_own_planes(const scene::Scene& scene, const Partition& cut);
 /// The same by the scene alone, without requests for whole fields.
-bool could_hold_own_planes(const scene::Scene& scene, const Cut& cut);
+bool could_hold_own_planes(const scene::Scene& scene, const Partition& cut);
 /// The replicated work of the pressure solve: the small levels of a distributed "multigrid", the matrix of PETSc, otherwise all.
-scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Cut& cut);
+scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Partition& cut);
 /// The storage of the scene's solver: distributed storage has `ghost_planes` planes.
 template <int D>
 HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach = 1);

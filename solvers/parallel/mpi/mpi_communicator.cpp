@@ -23,7 +23,7 @@ constexpr unsigned char poison_byte = 0xff;  // of NaN, single or double
 
 /// The exchange of one kind of array in a refresh.
 struct Plan {
-    Cut cut;
+    Partition cut;
     int count, ghost_planes;
     bool ring;
     struct PlaneMessage {
@@ -48,7 +48,7 @@ public:
     }
     ~MpiCommunicator() override { MPI_Finalize(); }
 
-    void refresh(const Cut& cut, std::span<const Planes> arrays, int ghost_planes, bool ring) override {
+    void refresh(const Partition& cut, std::span<const Planes> arrays, int ghost_planes, bool ring) override {
         requests_.clear();
         for (int peer = 0; peer < ranks(); ++peer)
             for (const bool sends : {false, true}) {
@@ -67,7 +67,7 @@ public:
         for (const Planes& planes : arrays) poison(plan_of(cut, planes.count, ghost_planes, ring), planes);
     }
 
-    void gather(const Cut& cut, const Planes& planes) override {
+    void gather(const Partition& cut, const Planes& planes) override {
         const PlaneType plane(planes.bytes);
         counts_.clear(), begins_.clear();
         for (int r = 0; r < ranks(); ++r) {
@@ -194,7 +194,7 @@ private:
     };
 
     /// Appends the planes of all arrays that are sent to, or received from, a rank to lengths_ and places_; returns their bytes.
-    std::size_t collect(const Cut& cut, std::span<const Planes> arrays, int ghost_planes, bool ring, int peer, bool sends) {
+    std::size_t collect(const Partition& cut, std::span<const Planes> arrays, int ghost_planes, bool ring, int peer, bool sends) {
         lengths_.clear(), places_.clear();
         std::size_t bytes = 0;
         for (const Planes& planes : arrays)
@@ -234,7 +234,7 @@ private:
         traffic_.bytes += static_cast<std::int64_t>(bytes);
     }
 
-    const Plan& plan_of(const Cut& cut, int count, int ghost_planes, bool ring) {
+    const Plan& plan_of(const Partition& cut, int count, int ghost_planes, bool ring) {
         for (const Plan& plan : plans_)
             if (plan.count == count && plan.ghost_planes == ghost_planes && plan.ring == ring && plan.cut == cut) return plan;
         Plan plan{cut, count, ghost_planes, ring, {}};

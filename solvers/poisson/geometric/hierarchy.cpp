@@ -242,16 +242,16 @@ bool Hierarchy<D>::build(const Natural<D>& problem) {
 /// A level is distributed if it is large enough for messages and no coarse plane has children on two ranks. The coarsest level is
 /// replicated.
 template <int D>
-bool Hierarchy<D>::share(const Cut* cut) {
+bool Hierarchy<D>::share(const Partition* cut) {
     const bool known = cut == nullptr ? shared_as_.empty() : shared_as_ == *cut;
     if (known) return !levels_.empty() && !levels_[0].cut.empty();
-    shared_as_ = cut == nullptr ? Cut{} : *cut;
+    shared_as_ = cut == nullptr ? Partition{} : *cut;
     cut_levels(levels_, shared_as_);
     return !levels_.empty() && !levels_[0].cut.empty();
 }
 
 template <int D>
-void Hierarchy<D>::cut_levels(std::vector<Level<D>>& levels, const Cut& cut) {
+void Hierarchy<D>::cut_levels(std::vector<Level<D>>& levels, const Partition& cut) {
     for (auto& level : levels) level.cut = {};
     if (cut.empty() || levels.empty()) return;
     levels[0].cut = cut;
@@ -278,23 +278,23 @@ std::size_t Hierarchy<D>::bytes() const {
 }
 
 template <int D>
-std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut) {
+std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Partition& cut) {
     std::array<bool, D> wraps = periodic;
     for (int a = 0; a < D; ++a) wraps[static_cast<std::size_t>(a)] = wraps[static_cast<std::size_t>(a)] && n[a] > 1;
     auto levels = levels_below(finest_of<D>(n, wraps, axis_weight, true));
     Hierarchy<D>::cut_levels(levels, cut);
     return levels;
 }
-template std::vector<Level<2>> cut_levels_of<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Cut&);
-template std::vector<Level<3>> cut_levels_of<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, const Cut&);
+template std::vector<Level<2>> cut_levels_of<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Partition&);
+template std::vector<Level<3>> cut_levels_of<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, const Partition&);
 
 template <int D>
-bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut) {
+bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Partition& cut) {
     const auto levels = cut_levels_of<D>(n, periodic, axis_weight, cut);
     return !levels.empty() && !levels[0].cut.empty();
 }
-template bool multigrid_shares<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Cut&);
-template bool multigrid_shares<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, const Cut&);
+template bool multigrid_shares<2>(const Index<2>&, const std::array<bool, 2>&, const Vec<2>&, const Partition&);
+template bool multigrid_shares<3>(const Index<3>&, const std::array<bool, 3>&, const Vec<3>&, const Partition&);
 
 template class Hierarchy<2>;
 template class Hierarchy<3>;

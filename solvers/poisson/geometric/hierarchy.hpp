@@ -16,9 +16,9 @@ public:
     std::vector<Level<D>>& levels() { return levels_; }
     Level<D>& finest() { return levels_.front(); }
     /// Partitions the large levels like the finest one, or none.
-    static void cut_levels(std::vector<Level<D>>& levels, const Cut& cut);
+    static void cut_levels(std::vector<Level<D>>& levels, const Partition& cut);
     /// The same; returns whether the finest level is distributed.
-    bool share(const Cut* cut);
+    bool share(const Partition* cut);
     /// u = A⁻¹ r on the coarsest level.
     void solve_coarsest();
     std::size_t bytes() const;
@@ -32,7 +32,7 @@ private:
     void build_coarsest();
 
     std::vector<Level<D>> levels_;
-    Cut shared_as_{};        // the partition that the levels' ones were derived from
+    Partition shared_as_{};        // the partition that the levels' ones were derived from
     bool windowed_ = false;  // distributed storage of the partitioned levels
     Arena arena_;
     SparseCholesky coarsest_;
@@ -44,6 +44,6 @@ private:
 
 /// The levels of such a problem without their memory, the large ones partitioned like the finest; none where the shape is not supported.
 template <int D>
-std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Cut& cut);
+std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Partition& cut);
 
 }  // namespace weir::poisson

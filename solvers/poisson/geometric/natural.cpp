@@ -155,7 +155,7 @@ void Natural<D>::find_runs() {
 /// In parallel, those of all ranks: there are few per row.
 template <int D>
 void Natural<D>::gather_runs() {
-    const Cut& cut = *detail::own_share.cut;
+    const Partition& cut = *detail::own_share.cut;
     const auto rows = static_cast<std::size_t>(planes() * rows_in_plane());
     std::vector<int> count(rows);
     const auto first = static_cast<std::size_t>(own_.begin * rows_in_plane());
@@ -265,7 +265,7 @@ void Natural<D>::gather_open() {
 
 template <int D>
 Operator<D> Natural<D>::as_operator() const {
-    const Cut* const cut = windowed_ ? detail::own_share.cut : nullptr;
+    const Partition* const cut = windowed_ ? detail::own_share.cut : nullptr;
     const AllPlanes whole;
     Operator<D> A;
     A.cells = Grid<Cell, D>(n_);

@@ -72,8 +72,8 @@ public:
                        rank < last || front.ring, f, exchange);
     }
     /// The partition of the level below a distributed one.
-    static Cut halved_cut(const Level<D>& at) {
-        Cut half = at.cut;
+    static Partition halved_cut(const Level<D>& at) {
+        Partition half = at.cut;
         if (at.coarsened[D - 1])
             for (int& plane : half.at) plane = (plane + 1) / 2;
         return half;

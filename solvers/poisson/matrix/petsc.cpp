@@ -47,7 +47,7 @@ private:
             });
         });
         const int rows = system_.A.size();
-        if (ranks_ > 1) communicator().gather(cut_of(rows, ranks_), {x_.data(), sizeof(real), rows});
+        if (ranks_ > 1) communicator().gather(equal_partition(rows, ranks_), {x_.data(), sizeof(real), rows});
     }
     std::size_t own_bytes() const override { return engine_->bytes(); }
 

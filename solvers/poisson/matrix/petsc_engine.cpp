@@ -97,7 +97,7 @@ private:
     /// Takes this rank's rows with their diagonal in PETSc's format; for a single rank these arrays are used in place.
     void take(const Matrix& A) {
         first_ = 0, end_ = static_cast<std::size_t>(A.size());
-        if (const Cut cut = cut_of(A.size(), ranks_); !cut.empty()) {
+        if (const Partition cut = equal_partition(A.size(), ranks_); !cut.empty()) {
             int rank = 0;
             MPI_Comm_rank(together_, &rank);
             first_ = static_cast<std::size_t>(cut.begin(rank)), end_ = static_cast<std::size_t>(cut.end(rank, A.size()));

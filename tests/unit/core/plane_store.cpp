@@ -28,7 +28,7 @@ public:
     ~ThreeRanks() { set_communicator(nullptr); }
     ThreeRanks(const ThreeRanks&) = delete;
     ThreeRanks& operator=(const ThreeRanks&) = delete;
-    const Cut cut = cut_of(24, 3);
+    const Partition cut = equal_partition(24, 3);
 };
 
 /// Does f die of looking where there is no memory?
@@ -58,7 +58,7 @@ std::size_t resident(const Grid<T, D>& q) {
 }
 
 TEST("a rank holds its planes and that number of ghost planes, around a ring too, and what lies beyond an end that it comes to") {
-    const Cut cut{{0, 8, 16, 24}};
+    const Partition cut{{0, 8, 16, 24}};
     const auto list = [&](int rank, int count, int margin, int ghost_planes, bool ring) {
         std::vector<int> planes;
         const auto held = planes_held(cut, rank, count, margin, ghost_planes, ring);

@@ -10,13 +10,13 @@ namespace weir {
 namespace {
 
 TEST("planes are cut at multiples of 8 where there are enough, of fewer where not, and every rank has some") {
-    EXPECT_TRUE(cut_of(100, 1).empty());
-    EXPECT_EQ(cut_of(64, 4).at, (std::vector<int>{0, 16, 32, 48, 64}));
-    EXPECT_EQ(cut_of(70, 3).at, (std::vector<int>{0, 16, 40, 70}));
-    EXPECT_EQ(cut_of(3, 3).at, (std::vector<int>{0, 1, 2, 3}));
+    EXPECT_TRUE(equal_partition(100, 1).empty());
+    EXPECT_EQ(equal_partition(64, 4).at, (std::vector<int>{0, 16, 32, 48, 64}));
+    EXPECT_EQ(equal_partition(70, 3).at, (std::vector<int>{0, 16, 40, 70}));
+    EXPECT_EQ(equal_partition(3, 3).at, (std::vector<int>{0, 1, 2, 3}));
     for (int planes = 1; planes < 80; ++planes)
         for (int ranks = 2; ranks <= std::min(planes, 9); ++ranks) {
-            const Cut cut = cut_of(planes, ranks);
+            const Partition cut = equal_partition(planes, ranks);
             ASSERT_EQ(cut.ranks(), ranks);
             ASSERT_EQ(cut.planes(), planes);
             for (int r = 0; r < ranks; ++r) ASSERT_LT(cut.begin(r), cut.end(r, planes)) << planes << " planes, " << ranks << " ranks";
@@ -26,23 +26,23 @@ TEST("planes are cut at multiples of 8 where there are enough, of fewer where no
 TEST("cuts by work: the slabs of a tank whose upper half is empty are in its lower half, and every rank has one") {
     std::vector<std::int64_t> half(128, 0);
     std::fill_n(half.begin(), 64, 1000);
-    EXPECT_EQ(load_balanced_cut(half, 2).at, (std::vector<int>{0, 32, 128}));
-    EXPECT_EQ(load_balanced_cut(half, 4).at, (std::vector<int>{0, 16, 32, 48, 128}));
-    EXPECT_TRUE(load_balanced_cut(half, 1).empty());
+    EXPECT_EQ(load_balanced_partition(half, 2).at, (std::vector<int>{0, 32, 128}));
+    EXPECT_EQ(load_balanced_partition(half, 4).at, (std::vector<int>{0, 16, 32, 48, 128}));
+    EXPECT_TRUE(load_balanced_partition(half, 1).empty());
     const std::vector<std::int64_t> even(64, 7), none(64, 0);
-    EXPECT_EQ(load_balanced_cut(even, 4), cut_of(64, 4));
-    EXPECT_EQ(load_balanced_cut(none, 3), cut_of(64, 3));
+    EXPECT_EQ(load_balanced_partition(even, 4), equal_partition(64, 4));
+    EXPECT_EQ(load_balanced_partition(none, 3), equal_partition(64, 3));
     std::vector<std::int64_t> one(20, 0);  // all of it in the last plane
     one.back() = 5;
     for (const int ranks : {2, 3, 7, 20}) {
-        const Cut cut = load_balanced_cut(one, ranks);
+        const Partition cut = load_balanced_partition(one, ranks);
         for (int r = 0; r < ranks; ++r) EXPECT_LT(cut.begin(r), cut.end(r, 20)) << ranks;
         EXPECT_EQ(cut.planes(), 20);
     }
 }
 
 /// Beyond both cuts, plane by plane as one would say it.
-std::set<int> wanted(const Cut& cut, int rank, int count, int ghost_planes, bool ring) {
+std::set<int> wanted(const Partition& cut, int rank, int count, int ghost_planes, bool ring) {
     std::set<int> planes;
     const int n = cut.planes();
     for (int plane = cut.begin(rank) - ghost_planes; plane < cut.end(rank, n) + ghost_planes; ++plane) {
@@ -59,7 +59,7 @@ TEST("what all ranks together send to one are its ghost planes, each once, from 
             for (const int faces : {0, 1})
                 for (const int ghost_planes : {1, 3, 7})
                     for (const bool ring : {false, true}) {
-                        const Cut cut = cut_of(n, ranks);
+                        const Partition cut = equal_partition(n, ranks);
                         for (int to = 0; to < ranks; ++to) {
                             std::set<int> sent;
                             for (int from = 0; from < ranks; ++from)
@@ -76,7 +76,7 @@ TEST("what all ranks together send to one are its ghost planes, each once, from 
 
 TEST("one rank owns everything, and an empty cut changes no loop") {
     EXPECT_FALSE(communicator().several());
-    const Cut none = cut_of(10, communicator().ranks());
+    const Partition none = equal_partition(10, communicator().ranks());
     const OwnPlanes mine(none);
     EXPECT_FALSE(is_distributed());
     int visited = 0;
@@ -95,7 +95,7 @@ TEST("one rank owns everything, and an empty cut changes no loop") {
 class Echo final : public Communicator {
 public:
     Echo() : Communicator(1, 2) {}
-    void gather(const Cut& cut, const Planes& planes) override {
+    void gather(const Partition& cut, const Planes& planes) override {
         auto* values = static_cast<real*>(planes.first);
         for (int plane = 0; plane < cut.end(0, planes.count); ++plane) values[plane] = plane;
     }
@@ -104,7 +104,7 @@ public:
 TEST("in parallel a loop does its own planes, and a sum adds those of all ranks in the order of the planes") {
     set_communicator(std::make_unique<Echo>());
     {
-        const Cut cut = cut_of(16, 2);
+        const Partition cut = equal_partition(16, 2);
         const OwnPlanes mine(cut);
         std::vector<int> seen(17, 0);
         for_each_plane(0, 17, [&](int plane) { seen[static_cast<std::size_t>(plane)] = 1; });  // 17: faces

@@ -154,7 +154,7 @@ TEST("in parallel the file has the bytes of one process, wherever its blocks are
             FieldSet fields = field.fields;
             const std::string alone = written(image_of(fields, 0, {}), compression);
             const TemporaryFolder folder;
-            const Cut cut{at};
+            const Partition cut{at};
             test::on_ranks(cut.ranks(), [&] {
                 const auto first = static_cast<std::size_t>(700 * cut.begin(communicator().rank())),
                            last = static_cast<std::size_t>(700 * cut.end(communicator().rank(), 500));
@@ -199,7 +199,7 @@ TEST("what the first rank cannot write is an error of all; what stood there stay
     const Field field(100, 100);
     const TemporaryFolder folder;
     std::ofstream(folder.path() / "file") << "old";
-    const Cut cut{{0, 40, 100}};
+    const Partition cut{{0, 40, 100}};
     test::on_ranks(2, [&] {
         std::signal(SIGXFSZ, SIG_IGN);
         const rlimit small{20000, 20000};

@@ -186,7 +186,7 @@ struct Water {
         return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(dim == 2 ? 1 : count[1]);
     }
     /// Stale ghosts of this rank are not numbers.
-    void forget(const Cut& cut) {
+    void forget(const Partition& cut) {
         const int last = n[static_cast<std::size_t>(dim - 1)], rank = communicator().rank();
         const auto keep = [](std::vector<real>& list, std::size_t per, int begin, int end) {
             for (std::size_t i = 0; i < list.size(); ++i)
@@ -228,7 +228,7 @@ TEST_IN_2D_AND_3D("water on a grid: from its level set and from its markers, of 
                 const SurfaceMesh whole = Reconstruction(options, scene).make(water.fields(0, markers), 0);
                 EXPECT_GT(whole.points.size(), 100U);
                 EXPECT_EQ(whole.velocity.size(), whole.points.size());
-                const Cut cut{at};
+                const Partition cut{at};
                 on_ranks(
                     cut.ranks(),
                     [&] {

@@ -35,13 +35,13 @@ TEST(
     std::int64_t heaviest = 0;
     for (std::size_t at = 0; at < 96; at += 8) heaviest = std::max(heaviest, sum(std::span(work).subspan(at, 8)));
     for (const int ranks : {2, 3, 4}) {
-        const Cut cut = load_balanced_cut(work, ranks);
+        const Partition cut = load_balanced_partition(work, ranks);
         EXPECT_LE(largest_share(work, cut), sum(work) / ranks + heaviest) << ranks;
         for (int r = 1; r < ranks; ++r) EXPECT_EQ(cut.begin(r) % 8, 0) << ranks;
     }
-    EXPECT_EQ(load_balanced_cut(work, 2).at, (std::vector<int>{0, 24, 96}));  // 6 slabs of liquid: 3 for each
+    EXPECT_EQ(load_balanced_partition(work, 2).at, (std::vector<int>{0, 24, 96}));  // 6 slabs of liquid: 3 for each
     // empty planes are not free, but a wet cell takes 28 times as much, and two thirds of the cells of 48 planes are wet
-    EXPECT_GT(static_cast<double>(largest_share(work, cut_of(96, 2))), 0.9 * static_cast<double>(sum(work)));
+    EXPECT_GT(static_cast<double>(largest_share(work, equal_partition(96, 2))), 0.9 * static_cast<double>(sum(work)));
 }
 
 // Both count cells in liquid and within three cells of the surface; the level set knows that a surface ends at solids and at walls, where
@@ -54,16 +54,16 @@ TEST("what the planes of a scene take is what those of the state take with which
     const auto told = water::work_of_planes(scene), found = water::work_of_planes(scene, &state);
     ASSERT_EQ(told.size(), found.size());
     EXPECT_NEAR(static_cast<double>(sum(told)) / static_cast<double>(sum(found)), 1, 0.05);
-    for (const int ranks : {2, 3, 4}) EXPECT_EQ(load_balanced_cut(told, ranks), load_balanced_cut(found, ranks)) << ranks;
+    for (const int ranks : {2, 3, 4}) EXPECT_EQ(load_balanced_partition(told, ranks), load_balanced_partition(found, ranks)) << ranks;
 }
 
 TEST("a tank that is wet along all of its length is cut into as many planes for each") {
     const auto work = water::work_of_planes(water_scene(one_end("0.96"), {{"solids", "[]"}}));
-    for (const int ranks : {2, 3, 4, 6}) EXPECT_EQ(load_balanced_cut(work, ranks), cut_of(96, ranks)) << ranks;
+    for (const int ranks : {2, 3, 4, 6}) EXPECT_EQ(load_balanced_partition(work, ranks), equal_partition(96, ranks)) << ranks;
 }
 
 // An emitter fills the tank later: nothing is known of where the liquid will be.
 TEST("a tank without liquid at the start is cut into as many planes for each") {
     const auto work = water::work_of_planes(water_scene(one_end("0.48"), {{"liquid", "[]"}}));
-    for (const int ranks : {2, 3, 4}) EXPECT_EQ(load_balanced_cut(work, ranks), cut_of(96, ranks)) << ranks;
+    for (const int ranks : {2, 3, 4}) EXPECT_EQ(load_balanced_partition(work, ranks), equal_partition(96, ranks)) << ranks;
 }
