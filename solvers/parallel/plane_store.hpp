@@ -138,8 +138,7 @@ private:
     };
 
     static bool makes_window(const Slab* slab, int count) {
-        if (slab == nullptr || !slab->distributed_storage()) return false;
-        return count == slab->partition().planes() || count == slab->partition().planes() + 1;
+        return slab != nullptr && (count == slab->partition().planes() || count == slab->partition().planes() + 1);
     }
     void make(const Slab* slab, std::size_t head, std::size_t plane, int count, int margin, const T& value) {
         size_ = head + plane * static_cast<std::size_t>(count + 2 * margin);

@@ -15,9 +15,9 @@ public:
         : partition_(std::move(partition)), rank_(rank), ghost_planes_(ghost_planes), ring_(ring) {}
     const Partition& partition() const { return partition_; }
     int rank() const { return rank_; }
-    /// The ghost planes that a new array stores on both sides of this rank's planes; 0: arrays are stored whole on all ranks, and ranks
-    /// share the work on them.
-    int ghost_planes() const { return ghost_planes_; }
+    /// The ghost planes that a new array stores on both sides of this rank's planes.
+    int ghost_planes() const { return distributed_storage() ? ghost_planes_ : partition_.planes(); }
+    /// Whether an array stores a part of the planes only. Otherwise it has memory for all, to be gathered where whole arrays are read.
     bool distributed_storage() const { return ghost_planes_ > 0; }
     /// Whether ghost planes are also stored around the ends of a periodic axis.
     bool ring() const { return ring_; }
@@ -29,7 +29,8 @@ private:
     bool ring_;
 };
 
-/// The slab of this process; nullptr for an empty partition. Equal slabs are one object, kept for the life of the process.
+/// The slab of this process; nullptr for an empty partition. 0 ghost planes: arrays have memory for all planes. Equal slabs are one object,
+/// kept for the life of the process.
 const Slab* slab_of(const Partition& partition, int ghost_planes = 0, bool ring = false);
 
 /// The planes that a loop covers; all by default. The first and the last rank's include those beyond the ends of the axis.

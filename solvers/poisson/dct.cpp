@@ -24,7 +24,7 @@ bool is_whole_closed_box(const Operator<D>& A) {
     for (int a = 0; a < D; ++a) {
         const auto& weight = A.weight[static_cast<std::size_t>(a)];
         const int n = A.cells.extent()[a];
-        const real wrong = sum_over<D>(weight.extent(), [&](const Index<D>& I) { return weight(I) != (I[a] > 0 && I[a] < n ? 1.0 : 0.0); });
+        const real wrong = sum_over(replicated<D>(weight.extent()), [&](const Index<D>& I) { return weight(I) != (I[a] > 0 && I[a] < n ? 1.0 : 0.0); });
         if (wrong > 0) return false;
     }
     return true;
@@ -43,9 +43,9 @@ public:
         if (!is_whole_closed_box(A))
             throw BadInput(
                 "pressure method \"dct\" solves whole closed boxes only: every cell fluid, all weights 1, no side open or periodic");
-        A_.cells = A.cells;
+        A_.cells = Grid<Cell, D>(replicated<D>(A.cells.extent()), Cell::fluid);
         A_.axis_weight = A.axis_weight;
-        const auto& n = A.cells.extent();
+        const Index<D> n = A.cells.extent();
         if (values_.extent() != n) plan(n);
         for (int a = 0; a < D; ++a) {
             auto& lambda = eigenvalue_[static_cast<std::size_t>(a)];
@@ -65,8 +65,8 @@ public:
         check_extents(p.extent() == values_.extent(), "p");
         check_extents(b.extent() == values_.extent(), "b");
         const auto& n = values_.extent();
-        const real mean = sum_over<D>(n, [&](const Index<D>& I) { return b(I); }) / static_cast<real>(b.size());
-        for_each_cell<D>(n, [&](const Index<D>& I) { b_(I) = b(I) - mean; });
+        const real mean = sum_over(n, [&](const Index<D>& I) { return b(I); }) / static_cast<real>(b.size());
+        for_each_cell(n, [&](const Index<D>& I) { b_(I) = b(I) - mean; });
         report_.iterations = 0;
         report_.history.clear();
         report_.residual_before = measure(p);
@@ -77,7 +77,7 @@ public:
         std::copy(values_.data(), values_.data() + values_.size(), p.data());
         report_.iterations = 1;
         report_.residual_after = measure(p);
-        report_.residual_max = max_over<D>(n, [&](const Index<D>& I) { return std::abs(values_(I)); });
+        report_.residual_max = max_over(n, [&](const Index<D>& I) { return std::abs(values_(I)); });
         report_.solve_seconds = watch.seconds();
         Options asked = options_;
         if (report_.residual_after > asked.tolerance) asked.tolerance = std::max(asked.tolerance, round_off(p));
@@ -91,8 +91,8 @@ private:
     /// FFTW_ESTIMATE: measured plans would differ between runs, and so would the last bits of the result.
     void plan(const Index<D>& n) {
         release();
-        values_ = Grid<real, D>(n);
-        b_ = Grid<real, D>(n);
+        values_ = Grid<real, D>(replicated(n));
+        b_ = Grid<real, D>(replicated(n));
         std::array<int, D> size;
         std::array<fftw_r2r_kind, D> there, back;
         for (int a = 0; a < D; ++a) size[static_cast<std::size_t>(a)] = n[D - 1 - a];
@@ -110,7 +110,7 @@ private:
     void divide() {
         real scale = 1;
         for (int a = 0; a < D; ++a) scale *= 2.0 * values_.extent()[a];
-        for_each_cell<D>(values_.extent(), [&](const Index<D>& k) {
+        for_each_cell(values_.extent(), [&](const Index<D>& k) {
             real lambda = 0;
             for (int a = 0; a < D; ++a) lambda += eigenvalue_[static_cast<std::size_t>(a)][static_cast<std::size_t>(k[a])];
             values_(k) = lambda > 0 ? values_(k) / (lambda * scale) : 0;
@@ -119,7 +119,7 @@ private:
     /// Stores b − A p in values_ and returns its norm relative to that of b.
     real measure(const Grid<real, D>& p) {
         residual(A_, p, b_, values_);
-        const auto square = [&](const Grid<real, D>& g) { return sum_over<D>(g.extent(), [&](const Index<D>& I) { return g(I) * g(I); }); };
+        const auto square = [&](const Grid<real, D>& g) { return sum_over(replicated<D>(g.extent()), [&](const Index<D>& I) { return g(I) * g(I); }); };
         const real b2 = square(b_);
         return b2 == 0 ? 0 : std::sqrt(square(values_) / b2);
     }
@@ -132,7 +132,7 @@ private:
         const real eta = 3.5 * epsilon * std::log2(4 * N);
         real norm_of_A = 0;
         for (int a = 0; a < D; ++a) norm_of_A += 4 * A_.axis_weight[a];
-        const auto square = [&](const Grid<real, D>& g) { return sum_over<D>(g.extent(), [&](const Index<D>& I) { return g(I) * g(I); }); };
+        const auto square = [&](const Grid<real, D>& g) { return sum_over(replicated<D>(g.extent()), [&](const Index<D>& I) { return g(I) * g(I); }); };
         return eta + (eta + (2 * D + 1) * epsilon) * norm_of_A * std::sqrt(square(p) / square(b_));
     }
 

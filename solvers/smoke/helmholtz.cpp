@@ -44,7 +44,7 @@ void laplacian(const Padded<D>& q, const Vec<D>& h, const Nodes<D>& nodes, const
 }
 
 template <int D>
-Helmholtz<D>::Helmholtz(const Nodes<D>& nodes, const Vec<D>& h, const Boundary<D>& boundary, OpenFaces<D> open, const Index<D>& extent)
+Helmholtz<D>::Helmholtz(const Nodes<D>& nodes, const Vec<D>& h, const Boundary<D>& boundary, OpenFaces<D> open, const Extent<D>& extent)
     : nodes_(nodes), h_(h), boundary_(boundary.homogeneous()), open_(open), direction_(extent), image_(extent), solution_(extent) {}
 
 /// The first direction is the residual, scaled: it is for δ, r for δ/scale.
@@ -53,9 +53,9 @@ void Helmholtz<D>::set_first_direction(const Grid<real, D>& r, const WallRows<D>
     fill_planes(direction_, r, boundary_);
     if (!walls.empty()) {
         walls.each([&](const Index<D>& I, real, real scale) { direction_(I) *= scale; });
-        for_each_plane(0, direction_.extent()[D - 1], [&](int plane) { fill_plane_ghosts(direction_, boundary_, plane); });
+        for_each_plane(direction_.extent(), [&](int plane) { fill_plane_ghosts(direction_, boundary_, plane); });
     }
-    fill_end_planes(direction_, boundary_);  // on all ranks, including those without walls
+    fill_end_planes(direction_, boundary_, 1);  // on all ranks, including those without walls
 }
 
 /// The solve is for δ/scale, with M = 1.

@@ -50,7 +50,7 @@ template <int D>
 class Helmholtz {
 public:
     /// `open`: for cells, whose flux passes through open faces only.
-    Helmholtz(const Nodes<D>& nodes, const Vec<D>& h, const Boundary<D>& boundary, OpenFaces<D> open, const Index<D>& extent);
+    Helmholtz(const Nodes<D>& nodes, const Vec<D>& h, const Boundary<D>& boundary, OpenFaces<D> open, const Extent<D>& extent);
     /// On entry r is the right-hand side (zero outside nodes and mask), on return δ, with ‖residual‖₂ ≤ tolerance ‖r‖₂. δ = 0 in held
     /// cells. Throws NumericalFailure if the tolerance is not reached; `what` names the quantity.
     int solve(Grid<real, D>& r, real a, const Mask<D>& mask, std::span<const Held> held, const char* what, const WallRows<D>& walls = {});

@@ -19,8 +19,7 @@ namespace weir::smoke {
 /// scheme. Before and after it, ∇·u = 0 to the projection's tolerance.
 template <int D>
 StepReport FlowSolver<D>::step(real dt) {
-    const OwnPlanes mine = held_.own();
-    whole_ = held_.cut().empty();
+    whole_ = !own().distributed();
     real t = state_.time;
     apply(Stage::source, dt);  // emitters
     for (const Substep& stage : substeps(options_.scheme)) {
@@ -86,14 +85,11 @@ real ambient_temperature(const scene::Scene& scene) {
 
 /// Evaluates f() on the rank that owns one end of the partitioned axis and broadcasts the result.
 template <class F>
-auto of_rank_at(int end, F&& f) -> decltype(f()) {
-    if (!is_distributed()) return f();
+auto of_rank_at(const OwnPlanes& planes, int end, F&& f) -> decltype(f()) {
+    if (!planes.distributed()) return f();
     const int owner = end == 0 ? 0 : communicator().ranks() - 1;
     decltype(f()) own{};
-    if (communicator().rank() == owner) {
-        const AllPlanes here;
-        own = f();
-    }
+    if (communicator().rank() == owner) own = f();
     return of_ranks(own)[static_cast<std::size_t>(owner)];
 }
 
@@ -114,12 +110,12 @@ void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {
                 I[a] = end == 0 ? 0 : s.u.cells[a];
                 return (end == 0 ? 1 : -1) * area * (open.empty() ? 1 : open(I)) * s.u[a](I);
             };
-            Index<D> side = s.u.cells;
+            Extent<D> side = a == D - 1 ? replicated<D>(s.u.cells) : s.u.cells;
             side[a] = 1;
             const auto sums = [&] {
                 return std::array<real, 2>{sum_over(side, flux), sum_over(side, [&](const Index<D>& I) { return std::abs(flux(I)); })};
             };
-            const auto [through, either_way] = a == D - 1 ? of_rank_at(end, sums) : sums();
+            const auto [through, either_way] = a == D - 1 ? of_rank_at(s.own(), end, sums) : sums();
             net += through, gross += either_way, faces += static_cast<real>(product(side));
         }
     if (!(std::abs(net) > faces * std::numeric_limits<real>::epsilon() * gross)) return;
@@ -134,7 +130,7 @@ int moments_of(std::size_t cells) { return static_cast<int>(std::clamp<std::size
 /// Rejects moving solids that change the volume of enclosed fluid. Tested from t = 0 to the end; afterwards the solids are at t = 0 again.
 template <int D>
 void refuse_squeezing(const scene::Scene& scene, MacState<D>& s, SolidPlacement<D>& solids) {
-    if (is_distributed()) return;  // the step tests it there
+    if (s.own().distributed()) return;  // the step tests it there
     const int moments = moments_of(s.cells.size());
     const real end = scene.number("time.end");
     for (int k = 0; k <= moments; ++k) {
@@ -160,9 +156,8 @@ bool lists(const scene::Scene& scene, const std::string& field) {
 
 template <int D>
 FlowSolver<D>::FlowSolver(const scene::Scene& scene)
-    : held_(held_planes<D>(scene, planes_beside, ghost_layers)),
-      effects_(make_effects<D>(effect_kinds(), scene, all_stages)),
-      state_(scene, field_plan(effects_, scene)),
+    : effects_(make_effects<D>(effect_kinds(), scene, all_stages)),
+      state_(scene, field_plan(effects_, scene), slab_of<D>(scene, planes_beside)),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
       walls_(solids_.any() && scene.effect("viscosity") ? std::make_unique<SolidWalls<D>>() : nullptr),
@@ -226,8 +221,7 @@ FlowSolver<D>::FlowSolver(const scene::Scene& scene)
     }
     apply(Stage::source, 0);  // values emitted from the start exist at the start: the first step has its forces
     passes_.reset();
-    held_.made();
-    whole_ = !held_.distributed();
+    whole_ = !own().distributed();
 }
 
 template <int D>
@@ -244,19 +238,20 @@ void FlowSolver<D>::remember(real dt) {
             fluid, fill_planes_and_measure(state_.before[a], state_.u[a], state_.boundary[static_cast<std::size_t>(a)]) / state_.u.h[a]);
     const real fastest = rate(fluid);
     trace_.set_max_rate(fastest);
-    set_reach(planes_reached(dt * fastest, state_.extent()[D - 1]));
+    state_.reach = planes_reached(dt * fastest, state_.extent()[D - 1]);
+    characteristics_.set_reach(state_.reach);
     fill_field_planes();
     fill_end_planes(remembered_, planes_to_extend());
-    solids_.fill_ghosts(state_, detail::own_share.reach + 3);
+    solids_.fill_ghosts(state_, state_.reach + 3);
     solids_.extend_velocity(state_);
     extend_fields();
 }
 
 /// In parallel: ghost planes needed so that the extrapolation into solids is complete to the depth that the step reads. It depends on
-/// neighbours' values and on other extrapolated ones. 0 without solids: then the reach itself.
+/// neighbours' values and on other extrapolated ones.
 template <int D>
 int FlowSolver<D>::planes_to_extend() const {
-    return solids_.any() ? detail::own_share.reach + 2 : 0;
+    return solids_.any() ? state_.reach + 2 : state_.reach;
 }
 
 template <int D>
@@ -269,19 +264,18 @@ template <int D>
 void FlowSolver<D>::extend_fields() {
     if (!solids_.any()) return;
     const bool ring = state_.sides.periodic(D - 1);
-    const WiderPlanes beyond(ring ? 0 : detail::own_share.reach);
     for (auto& field : state_.fields)
-        if (!field.derived) solids_.extend_field(state_, field.before);
-    if (ring) refresh(remembered_fields_);
+        if (!field.derived) solids_.extend_field(state_, field.before, ring ? 0 : state_.reach);
+    if (ring) refresh(remembered_fields_, state_.reach);
 }
 
 /// Forces on a face depend on the cells on both sides.
 template <int D>
 void FlowSolver<D>::refresh_fields() {
-    if (!is_distributed() || state_.fields.empty()) return;
+    if (!own().distributed() || state_.fields.empty()) return;
     shared_.clear();
     for (auto& field : state_.fields) shared_.push_back(planes_of(field.values));
-    communicator().refresh(held_.cut(), shared_, 1, state_.sides.periodic(D - 1));
+    communicator().refresh(own().partition(), shared_, 1, state_.sides.periodic(D - 1));
 }
 
 /// Bodies move before friction, which uses their new position.
@@ -355,14 +349,14 @@ void FlowSolver<D>::advect_velocity(real dt) {
     const PressurePush<D> taken(state_, -0.5 * dt / state_.rho), given_back(state_, 0.5 * dt / state_.rho);
     if (second_order) {
         for (int a = 0; a < D; ++a)
-            for_each_plane(0, carried_[a].extent()[D - 1], [&](int plane) {
+            for_each_plane(carried_[a].extent(), [&](int plane) {
                 fill_plane(carried_[a], state_.boundary[static_cast<std::size_t>(a)], plane,
                            [&](const Index<D>& first, int count, real* row) {
                                std::copy_n(&state_.u[a](first), count, row);
                                taken.add(a, first, count, row);
                            });
             });
-        fill_end_planes(carried_velocity_);
+        fill_end_planes(carried_velocity_, state_.reach);
     }
     for (int a = 0; a < D; ++a) {
         const auto& boundary = state_.boundary[static_cast<std::size_t>(a)];
@@ -424,7 +418,6 @@ void FlowSolver<D>::place_solids(real t, real dt) {
     const auto timed = passes_.time("solids");
     if (bodies_) bodies_->advance_free(solids_, dt);
     if (!solids_.moving()) return;
-    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     projection_.set_matrix(state_);
 }
@@ -510,7 +503,7 @@ template <int D>
 StepReport FlowSolver<D>::report(real dt) {
     const real fastest = fastest_ = max_rate(state_.u);
     if (!std::isfinite(fastest)) throw NumericalFailure("velocity", "the velocity is not finite");
-    if (!held_.cut().empty()) check_own_planes();
+    if (own().distributed()) check_own_planes();
     const real divergence = max_divergence(state_);
     require_room(state_, solids_, divergence);
     return {.dt = dt,
@@ -536,8 +529,7 @@ void FlowSolver<D>::check_own_planes() const {
 template <int D>
 void FlowSolver<D>::gather_whole() const {
     if (whole_) return;
-    if (held_.distributed()) return fill_ghosts();
-    const OwnPlanes mine(held_.cut());
+    if (own().distributed_storage()) return fill_ghosts();
     auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
@@ -547,19 +539,17 @@ void FlowSolver<D>::gather_whole() const {
 
 template <int D>
 void FlowSolver<D>::fill_ghosts() const {
-    const OwnPlanes mine = held_.own();
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all;
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
     all.push_back(planes_of(state.p));
     for (auto& field : state.fields) all.push_back(planes_of(field.values));
-    communicator().refresh(held_.cut(), all, planes_beside, held_.ring());
+    communicator().refresh(own().partition(), all, planes_beside, state_.sides.periodic(D - 1));
     whole_ = true;
 }
 
 template <int D>
 real FlowSolver<D>::advised_dt() const {
-    const OwnPlanes mine(held_.cut());
     const real fastest = last_rate();
     return std::min({fastest > 0 ? cfl_ / fastest : infinity, effects_.max_dt(state_), heat_ ? heat_->max_dt(state_) : infinity});
 }
@@ -570,7 +560,6 @@ StepLimit FlowSolver<D>::stable_dt() const {
     if (const real most = heat_ ? heat_->stable_dt(state_) : infinity; most < infinity)
         return {most, "explicit conduction of heat is stable up to it"};
     if (options_.scheme != Scheme::conservative) return {};
-    const OwnPlanes mine(held_.cut());
     const real fastest = last_rate();
     return {fastest > 0 ? runge_kutta_limit / fastest : infinity, runge_kutta_limit_why};
 }
@@ -578,13 +567,15 @@ StepLimit FlowSolver<D>::stable_dt() const {
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
     gather_whole();
-    const OwnPlanes mine = held_.looking();
+    const bool gathers = own().distributed() && !own().distributed_storage();
     FieldSet set = field_set(state_);
-    if (held_.distributed()) set.cut = &held_.cut();
+    if (own().distributed_storage()) set.cut = &own().partition();
     if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
         vorticity(state_, vorticity_);
         FieldView view{"vorticity", "1/s", Where::cell, "", {}};
+        for (auto& component : vorticity_)
+            if (gathers) gather(component);
         for (const auto& component : vorticity_) view.data.push_back(component.values());
         set.fields.push_back(std::move(view));
     }
@@ -593,6 +584,7 @@ FieldSet FlowSolver<D>::fields() const {
         for_each_cell(state_.extent(), [&](const Index<D>& I) {
             divergence_(I) = state_.cells(I) == poisson::Cell::fluid ? flux_divergence(state_, I) : 0;
         });
+        if (gathers) gather(divergence_);
         set.fields.push_back({"divergence", "1/s", Where::cell, "", {divergence_.values()}});
     }
     if (bodies_) bodies_->bodies().show(set);
@@ -602,7 +594,6 @@ FieldSet FlowSolver<D>::fields() const {
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
     gather_whole();
-    const OwnPlanes mine = held_.looking();
     auto list = smoke::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
@@ -645,8 +636,6 @@ void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
 
 template <int D>
 void FlowSolver<D>::save(Checkpoint& to) const {
-    if (!held_.distributed()) gather_whole();
-    const OwnPlanes mine = held_.looking();
     state_.save(to);
     if (bodies_) bodies_->save(to);
     to.put_value("impulse", impulse_);
@@ -657,14 +646,11 @@ void FlowSolver<D>::save(Checkpoint& to) const {
 
 template <int D>
 void FlowSolver<D>::restore(const Checkpoint& from) {
-    {
-        const OwnPlanes mine = held_.looking();
-        state_.restore(from);
-    }
+    state_.restore(from);
     if (bodies_) bodies_->restore(from, solids_);
     if (heat_) heat_->restore(from, state_);
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
-    whole_ = !held_.distributed();
+    whole_ = !own().distributed();
     gather_whole();
     if (walls_) walls_->forget();
     fastest_ = not_applicable;
@@ -674,7 +660,6 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
         smoke_removed_ = smoke[0], smoke_continued_ = smoke[1];
     }
     if (!solids_.moving()) return;
-    const OwnPlanes mine = held_.looking();
     solids_.place(state_, state_.time);
     projection_.set_matrix(state_);
     remember_solids();

@@ -9,7 +9,6 @@
 #include "mac/bodies/solid_walls.hpp"
 #include "mac/grid/projection.hpp"
 #include "mac/grid/state.hpp"
-#include "parallel/held_planes.hpp"
 #include "scene/solver_kind.hpp"
 #include "smoke/effects.hpp"
 #include "smoke/heat.hpp"
@@ -41,7 +40,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.distributed(); }
+    bool holds_own_planes() const override { return own().distributed_storage(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     BrushForcing* brush() const override { return brush_forcing_.get(); }
@@ -52,7 +51,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     /// In parallel, for the planes that each rank owns.
-    bool checks_itself() const override { return !held_.cut().empty(); }
+    bool checks_itself() const override { return own().distributed(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
@@ -66,6 +65,7 @@ public:
     const poisson::Report& pressure_report() const { return *report_; }
 
 private:
+    const OwnPlanes& own() const { return state_.own(); }
     void apply(Stage stage, real dt);
     void remember(real dt);
     int planes_to_extend() const;
@@ -98,7 +98,6 @@ private:
     void fill_ghosts() const;
     void add_loads(std::vector<Integral>& list) const;
 
-    HeldPlanes held_;
     Effects<MacState<D>> effects_;
     MacState<D> state_;
     std::unique_ptr<BodiesInFlow<D>> bodies_;  // nullptr where the scene has no bodies

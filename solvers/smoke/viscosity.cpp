@@ -57,7 +57,7 @@ real explicit_limit(real nu, const Vec<D>& h) {
 template <int D>
 class Diffuser {
 public:
-    Diffuser(const Nodes<D>& nodes, const MacState<D>& s, const Boundary<D>& boundary, OpenFaces<D> open, const Index<D>& extent)
+    Diffuser(const Nodes<D>& nodes, const MacState<D>& s, const Boundary<D>& boundary, OpenFaces<D> open, const Extent<D>& extent)
         : nodes_(nodes), h_(s.u.h), open_(open), mask_(), rows_(), rhs_(extent), solver_(nodes, h_, boundary, open, extent) {}
     Mask<D>& mask() { return mask_; }
     const Mask<D>& mask() const { return mask_; }
@@ -104,7 +104,7 @@ private:
 
 /// Marks the nodes whose weight is positive.
 template <int D, class Weight>
-void set_mask(Mask<D>& mask, const Index<D>& extent, Weight weight) {
+void set_mask(Mask<D>& mask, const Extent<D>& extent, Weight weight) {
     if (mask.empty()) mask = Mask<D>(extent);
     for_each_cell(extent, [&](const Index<D>& I) { mask(I) = weight(I) ? 1 : 0; });
     fill_ghosts(mask, Boundary<D>{}, 1);

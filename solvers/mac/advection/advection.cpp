@@ -26,7 +26,8 @@ std::size_t offset(const Index<D>& extent, Index<D> I, int plane) {
 template <int D>
 void copy_ends(const Padded<D>& from, int axis, Padded<D>& to) {
     for (const int end : {0, from.extent()[axis] - 1}) {
-        Index<D> lo{}, hi = from.extent();
+        Index<D> lo{};
+        Extent<D> hi = from.extent();
         lo[axis] = end;
         hi[axis] = end + 1;
         for_each_in(lo, hi, [&](const Index<D>& I) { to(I) = from(I); });
@@ -83,12 +84,13 @@ void CharacteristicAdvection<D>::advect(const std::vector<Carried<D>>& quantitie
     const Motion motion{quantities, nodes, trace, dt, on_arrival};
     if (options_.scheme == Scheme::semi_lagrangian) return semi_lagrangian(motion);
     if (trace.is_near(dt) && options_.interpolation == Interpolation::linear) return follow_planes(motion);
-    const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(quantities[0].source->extent()[D - 1]);
+    const Extent<D>& all = quantities[0].source->extent();
+    const int lo = all.own.lower(0), hi = all.own.upper(all[D - 1]);
     prepare(motion, hi - lo);
     predict(motion, lo);
     for (const auto& one : predicted_)
-        for_each_plane(0, one.values->extent()[D - 1], [&](int plane) { fill_plane_ghosts(*one.values, *one.boundary, plane); });
-    fill_end_planes(predicted_);
+        for_each_plane(one.values->extent(), [&](int plane) { fill_plane_ghosts(*one.values, *one.boundary, plane); });
+    fill_end_planes(predicted_, reach_);
     correct(motion, lo);
 }
 
@@ -147,7 +149,8 @@ typename CharacteristicAdvection<D>::Motion CharacteristicAdvection<D>::Motion::
 template <int D>
 void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
     const int planes = m.quantities[0].source->extent()[D - 1];
-    const int lo = detail::own_share.lower(m.nodes.lo[D - 1]), hi = detail::own_share.upper(m.nodes.hi[D - 1]);
+    const OwnPlanes& own = m.quantities[0].source->extent().own;
+    const int lo = own.lower(m.nodes.lo[D - 1]), hi = own.upper(m.nodes.hi[D - 1]);
     const int shares = std::min(threads(), std::max(hi - lo, 0));
     prepare(m, 3 * shares);
     const auto begin_of = [&](int share) { return lo + (hi - lo) * share / shares; };
@@ -164,8 +167,8 @@ void CharacteristicAdvection<D>::follow_planes(const Motion& m) {
             if (k - 1 > begin) correct_plane(k - 1, share);
         }
     });
-    for (int k = detail::own_share.lower(0); k < lo; ++k) fill_plane(k);
-    for (int k = std::max(lo, hi); k < detail::own_share.upper(planes); ++k) fill_plane(k);
+    for (int k = own.lower(0); k < lo; ++k) fill_plane(k);
+    for (int k = std::max(lo, hi); k < own.upper(planes); ++k) fill_plane(k);
     fill_end_planes(predicted_, 1);
     parallel_for(0, shares, [&](int share) {
         const int first = begin_of(share), last = begin_of(share + 1) - 1;

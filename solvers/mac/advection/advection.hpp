@@ -47,6 +47,8 @@ public:
     /// The same for several quantities on the same nodes: trajectories are traced once.
     void advect(const std::vector<Carried<D>>& quantities, const Nodes<D>& nodes, const Backtrace<D>& trace, real dt,
                 const PressurePush<D>* on_arrival = nullptr);
+    /// In parallel: number of ghost planes that departure points reach in this step.
+    void set_reach(int planes) { reach_ = planes; }
     std::size_t bytes() const;
 
 private:
@@ -73,6 +75,7 @@ private:
     void follow_planes(const Motion& motion);
 
     AdvectionOptions options_;
+    int reach_ = ghost_layers;
     std::vector<Room> room_;
     std::vector<WithBoundary<D>> predicted_;  // of the last prepare()
     std::vector<Carried<D>> one_{1};

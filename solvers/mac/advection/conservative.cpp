@@ -78,7 +78,7 @@ void CutFaces<D>::find(const MacState<D>& s) {
         list.clear();
         const Nodes<D> nodes = free_faces(s.u, s.sides, a);
         Index<D> I = nodes.lo;
-        const int lo = detail::own_share.lower(nodes.lo[D - 1]), hi = detail::own_share.upper(nodes.hi[D - 1]);
+        const int lo = s.own().lower(nodes.lo[D - 1]), hi = s.own().upper(nodes.hi[D - 1]);
         for (I[D - 1] = lo; I[D - 1] < hi;) {
             if (is_cut(s, a, I)) list.push_back(I);
             for (int d = 0; d < D; ++d) {
@@ -87,7 +87,7 @@ void CutFaces<D>::find(const MacState<D>& s) {
             }
         }
     }
-    any_ = true, begin_ = detail::own_share.begin, end_ = detail::own_share.end;
+    found_ = true;
 }
 
 template <int D>

@@ -42,7 +42,7 @@ class CutFaces {
 public:
     /// Finds the cut faces in the planes that this rank owns.
     void find(const MacState<D>& s);
-    bool found() const { return any_ && begin_ == detail::own_share.begin && end_ == detail::own_share.end; }
+    bool found() const { return found_; }
     /// add_momentum_flux for these faces in their present state.
     void add_momentum_flux(const MacState<D>& s, int a, real dt, Grid<real, D>& u_a);
     std::size_t bytes() const;
@@ -51,8 +51,7 @@ private:
     real rate(const MacState<D>& s, int a, const Index<D>& I) const;
     std::array<std::vector<Index<D>>, D> faces_;
     std::vector<real> values_;
-    bool any_ = false;
-    int begin_ = 0, end_ = 0;
+    bool found_ = false;
 };
 
 /// q −= dt Σ_b δ_b(u_b q_b)  on all cells, q_b the value on the face; faces closed by a solid have no flux.

@@ -240,7 +240,7 @@ void BodiesInFlow<D>::learn() {
 template <int D>
 real BodiesInFlow<D>::square_of(const MacState<D>& s, const Grid<real, D>& b) const {
     const std::size_t plane = b.size() / static_cast<std::size_t>(s.extent()[D - 1]);
-    return plane_sum(s.extent()[D - 1], [&](int k) {
+    return plane_sum(s.own(), s.extent()[D - 1], [&](int k) {
         const std::size_t first = static_cast<std::size_t>(k) * plane;
         const Cell* cell = s.cells.data() + first;
         const real* value = b.data() + first;

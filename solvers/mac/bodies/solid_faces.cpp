@@ -84,7 +84,7 @@ SolidPlacement<D>::SolidPlacement(geometry::Solids<D> solids, MacState<D>& state
     if (!any()) return;
     state.allocate_solids();
     corner_ = Grid<real, D>(state.extent() + Index<D>::constant(1));
-    open(state, detail::own_share.kept);
+    open(state, state.own().distributed() ? state.own().slab->ghost_planes() : 0);
     place(state, 0);
     placed_ = false;  // data derived from the solids have not been updated yet
 }
@@ -118,8 +118,6 @@ void SolidPlacement<D>::fill_ghosts(MacState<D>& s, int planes, const std::funct
 template <int D>
 void SolidPlacement<D>::place(MacState<D>& s, real t) {
     if (!any()) return;
-    const bool distributed = corner_.store().windowed();
-    const AllPlanes all(!distributed);  // distributed storage: each rank computes all planes that it stores
     solids_.set_time(time_ = t);
     find_changed(s);
     for (std::size_t box = 0; box < changed_.size(); ++box) {
@@ -129,7 +127,7 @@ void SolidPlacement<D>::place(MacState<D>& s, real t) {
         place_cells(s, box);
     }
     extends_ = false;
-    if (distributed && moving()) rate_ = find_rate(s);
+    if (s.own().distributed() && moving()) rate_ = find_rate(s);
 }
 
 /// Signed distances at the corners of a box, as far as they are used. The two ends of a periodic axis get the same bits, so that face
@@ -353,9 +351,9 @@ void SolidPlacement<D>::extend_velocity(MacState<D>& s) {
 }
 
 template <int D>
-void SolidPlacement<D>::extend_field(const MacState<D>& s, Padded<D>& before) const {
+void SolidPlacement<D>::extend_field(const MacState<D>& s, Padded<D>& before, int beyond) const {
     if (!any()) return;
-    for_each_cell(s.extent(), [&](const Index<D>& I) {
+    for_each_cell(s.extent().wider(beyond), [&](const Index<D>& I) {
         if (s.cells(I) != Cell::solid) return;
         real sum = 0;
         int count = 0;
@@ -386,13 +384,13 @@ real SolidPlacement<D>::find_rate(const MacState<D>& s) const {
         real fastest = 0;  // of moving solids: all others are at rest
         for (const CellBox<D>& box : changed_)
             box.faces(a).rows([&](const Index<D>& I, int count) {
-                if (!is_own_plane(I[D - 1])) return;
+                if (!s.own().contains(I[D - 1])) return;
                 const real* v = &velocity(I);
                 real most = 0, poison = 0;  // x - x is 0, or NaN where x is not finite
                 for (int i = 0; i < count; ++i) most = std::max(most, std::abs(v[i])), poison += v[i] - v[i];
                 fastest = larger_or_nan(fastest, most + poison);
             });
-        if (is_distributed())
+        if (s.own().distributed())
             for (const real of_rank : of_ranks(fastest)) fastest = larger_or_nan(fastest, of_rank);
         rate = std::max(rate, fastest / s.u.h[a]);
     }

@@ -98,7 +98,7 @@ public:
     /// Extrapolates s.before by one face into free-slip solids: tangential velocity from the flow beside, normal velocity of the solid.
     void extend_velocity(MacState<D>& s);
     /// Extrapolates a field's `before` by one cell into solids: the mean of the neighbours that are not solid.
-    void extend_field(const MacState<D>& s, Padded<D>& before) const;
+    void extend_field(const MacState<D>& s, Padded<D>& before, int beyond = 0) const;
     /// Maximum of |velocity| / h over solid faces now [1/s]; 0 where all moving solids are free bodies, which limit their own step.
     real max_rate(const MacState<D>& s) const;
     std::size_t bytes() const { return corner_.bytes() + extended_.capacity() * sizeof(Extended); }

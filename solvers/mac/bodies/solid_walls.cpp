@@ -62,7 +62,7 @@ SolidWall<D> wall_between(const MacState<D>& s, const geometry::Solids<D>& solid
 
 template <int D>
 bool SolidWalls<D>::found() const {
-    return any_ && begin_ == detail::own_share.begin && end_ == detail::own_share.end;
+    return found_;
 }
 
 template <int D>
@@ -80,7 +80,7 @@ void SolidWalls<D>::find(const MacState<D>& s, const SolidPlacement<D>& placemen
         set_mask(s, placement, a, margin);
         find_nodes(s, placement, a);
     }
-    any_ = true, begin_ = detail::own_share.begin, end_ = detail::own_share.end;
+    found_ = true;
 }
 
 /// Faces whose centre lies in a no-slip solid move with it. Most faces are too far from any solid to need a distance.
@@ -113,7 +113,7 @@ void SolidWalls<D>::find_nodes(const MacState<D>& s, const SolidPlacement<D>& pl
     const auto& mask = takes_part_[at];
     const auto& open = s.solid.open[at];
     Nodes<D> free = free_faces(s.u, s.sides, a);
-    free.lo[D - 1] = detail::own_share.lower(free.lo[D - 1]), free.hi[D - 1] = detail::own_share.upper(free.hi[D - 1]);
+    free.lo[D - 1] = s.own().lower(free.lo[D - 1]), free.hi[D - 1] = s.own().upper(free.hi[D - 1]);
     nodes_[at].clear(), walls_[at].clear(), held_[at].clear();
     const auto look = [&](const Index<D>& I) {
         if (mask(I) == 0) return held_[at].push_back({I, solids.velocity(s.u.face_centre(a, I))[a]});
@@ -185,13 +185,13 @@ void add_torque(SolidLoad<D>& load, int a, real force, const Vec<D>& x) {
 
 /// Sums the contribution of each plane, in order.
 template <int D, class F>
-SolidLoad<D> load_over(int planes, F&& of_plane) {
+SolidLoad<D> load_over(const OwnPlanes& own, int planes, F&& of_plane) {
     std::vector<SolidLoad<D>> part(static_cast<std::size_t>(planes));
-    for_each_plane(0, planes, [&](int plane) { part[static_cast<std::size_t>(plane)] = of_plane(plane); });
+    for_each_plane(own, 0, planes, [&](int plane) { part[static_cast<std::size_t>(plane)] = of_plane(plane); });
     SolidLoad<D> sum;
-    for (int d = 0; d < D; ++d) sum.force[d] = plane_sum(planes, [&](int plane) { return part[static_cast<std::size_t>(plane)].force[d]; });
+    for (int d = 0; d < D; ++d) sum.force[d] = plane_sum(own, planes, [&](int plane) { return part[static_cast<std::size_t>(plane)].force[d]; });
     for (std::size_t k = 0; k < sum.torque.size(); ++k)
-        sum.torque[k] = plane_sum(planes, [&](int plane) { return part[static_cast<std::size_t>(plane)].torque[k]; });
+        sum.torque[k] = plane_sum(own, planes, [&](int plane) { return part[static_cast<std::size_t>(plane)].torque[k]; });
     return sum;
 }
 
@@ -202,7 +202,7 @@ SolidLoad<D> load_over(int planes, F&& of_plane) {
 template <int D>
 SolidLoad<D> SolidWalls<D>::friction(const MacState<D>& s) const {
     const auto before = [](const WallNode<D>& n, int plane) { return n.node[D - 1] < plane; };
-    return load_over<D>(s.u.cells[D - 1] + 1, [&](int plane) {
+    return load_over<D>(s.own(), s.u.cells[D - 1] + 1, [&](int plane) {
         SolidLoad<D> load;
         for (int a = 0; a < D; ++a) {
             const auto list = nodes(a);
@@ -234,7 +234,7 @@ std::size_t SolidWalls<D>::bytes() const {
 template <int D>
 SolidLoad<D> pressure_load(const MacState<D>& s) {
     if (!s.solid.any()) return {};
-    SolidLoad<D> load = load_over<D>(s.extent()[D - 1], [&](int plane) {
+    SolidLoad<D> load = load_over<D>(s.own(), s.extent()[D - 1], [&](int plane) {
         SolidLoad<D> part;
         Index<D> lo{}, hi = s.extent();
         lo[D - 1] = plane, hi[D - 1] = plane + 1;

@@ -54,7 +54,7 @@ public:
     /// Finds the walls for the solids at `now`; `last` is the time of the previous velocities. Only in planes that this rank owns.
     void find(const MacState<D>& s, const SolidPlacement<D>& placement, real now, real last);
     bool found() const;
-    void forget() { any_ = false; }
+    void forget() { found_ = false; }
     /// Returns whether any solid is no-slip.
     bool no_slip() const { return no_slip_; }
 
@@ -80,8 +80,7 @@ private:
     std::array<std::vector<SolidWall<D>>, D> walls_;
     std::array<std::vector<HeldFace<D>>, D> held_;
     std::vector<geometry::Pose<D>> last_;  // of each moving solid
-    bool no_slip_ = false, any_ = false;
-    int begin_ = 0, end_ = 0;  // the range of planes that were searched
+    bool no_slip_ = false, found_ = false;
 };
 
 /// Force of the pressure on all solids: Σ p S, S the area of solid surface in each fluid cell, whose components are differences of the open

@@ -50,7 +50,7 @@ private:
             const Nodes<D> faces = under(brush, s.u, free_faces(s.u, s.sides, a));
             Index<D> extent = faces.hi - faces.lo;
             for (int d = 0; d < D; ++d) extent[d] = std::max(extent[d], 0);
-            const real given = sum_over(extent, [&](const Index<D>& J) -> real {
+            const real given = sum_over(replicated(extent), [&](const Index<D>& J) -> real {
                 const Index<D> I = faces.lo + J;
                 const Vec<D> x = s.u.face_centre(a, I);
                 const real weight = brush.weight(x), share = weight > 0 ? fluid_share(s, a, I) : 0;

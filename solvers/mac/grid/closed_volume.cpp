@@ -98,7 +98,7 @@ Squeezed<D> find_in_all(const MacState<D>& s) {
 
 template <int D>
 Squeezed<D> find_squeezed(const MacState<D>& s, const geometry::Solids<D>& solids) {
-    if (is_distributed()) return find_in_all(s);
+    if (s.own().distributed()) return find_in_all(s);
     std::vector<char> seen(s.cells.size(), 0);
     std::vector<std::size_t> stack;
     std::size_t fluid = 0;

@@ -19,8 +19,7 @@ Index<D> side_extent(Index<D> extent, int axis) {
 /// Tangential values of an inflow with a profile, one per node of the side.
 template <int D>
 std::vector<real> inflow_values(const geometry::Sides<D>& sides, const MacVelocity<D>& u, int component, int axis, int end, real nu) {
-    const AllPlanes whole;  // replicated work: sides are small
-    const Index<D> nodes = side_extent(u[component].extent(), axis);
+    const Extent<D> nodes = replicated(side_extent<D>(u[component].extent(), axis));  // sides are small
     Grid<real, D> values(nodes);
     for_each_cell(nodes, [&](const Index<D>& I) {
         Vec<D> x = u.face_centre(component, I);
@@ -93,7 +92,7 @@ void fill_lines(Padded<D>& q, int axis, const Boundary<D>& boundary, const Index
     const std::ptrdiff_t stride = q.stride(axis);
     const auto holds = [&](int plane) { return axis != D - 1 || q.holds(plane); };
     if (ends[0].kind == Kind::periodic) return wrap(first, stride, n, n - (axis == boundary.node_axis ? 1 : 0), count, holds);
-    const Index<D> nodes = side_extent(q.extent(), axis);
+    const Index<D> nodes = side_extent<D>(q.extent(), axis);
     for (int end = 0; end < 2; ++end) {
         const EndRule& rule = ends[static_cast<std::size_t>(end)];
         if (rule.profile.empty()) {
@@ -163,11 +162,6 @@ void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane) {
 
 namespace {
 
-int depth(int ghost_planes) { return ghost_planes > 0 ? ghost_planes : detail::own_share.reach; }
-
-void refresh_all(std::span<const Planes> planes, bool ring, int ghost_planes) {
-    communicator().refresh(*detail::own_share.cut, planes, depth(ghost_planes), ring);
-}
 template <int D>
 bool repeats(const Boundary<D>& boundary) {
     return boundary.end[D - 1][0].kind == Kind::periodic;
@@ -189,22 +183,21 @@ void fill_ends(Padded<D>& q, const Boundary<D>& boundary) {
 
 template <int D>
 void refresh(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes) {
-    if (!is_distributed()) return;
-    q.open(depth(ghost_planes), repeats(boundary));
-    const Planes planes = q.planes();
-    refresh_all(std::span(&planes, 1), repeats(boundary), ghost_planes);
+    if (!q.extent().own.distributed()) return;
+    q.open(ghost_planes, repeats(boundary));
+    communicator().refresh(q.extent().own.partition(), q.planes(), ghost_planes, repeats(boundary));
 }
 
 template <int D>
 void refresh(const std::vector<WithBoundary<D>>& list, int ghost_planes) {
-    if (!is_distributed() || list.empty()) return;
+    if (list.empty() || !list[0].values->extent().own.distributed()) return;
     thread_local std::vector<Planes> planes;
     planes.clear();
     for (const auto& one : list) {
-        one.values->open(depth(ghost_planes), repeats(*one.boundary));
+        one.values->open(ghost_planes, repeats(*one.boundary));
         planes.push_back(one.values->planes());
     }
-    refresh_all(planes, repeats(*list[0].boundary), ghost_planes);
+    communicator().refresh(list[0].values->extent().own.partition(), planes, ghost_planes, repeats(*list[0].boundary));
 }
 
 template <int D>
@@ -221,7 +214,7 @@ void fill_end_planes(const std::vector<WithBoundary<D>>& list, int ghost_planes)
 
 template <int D>
 void fill_planes(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
-    for_each_plane(0, to.extent()[D - 1], [&](int plane) {
+    for_each_plane(to.extent(), [&](int plane) {
         fill_plane(to, boundary, plane,
                    [&](const Index<D>& first, int count, real* row) { std::copy_n(from.data() + from.linear(first), count, row); });
     });
@@ -235,7 +228,7 @@ void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary)
 
 template <int D>
 real fill_planes_and_measure(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary) {
-    return plane_max(to.extent()[D - 1], [&](int plane) {
+    return plane_max(to.extent().own, to.extent()[D - 1], [&](int plane) {
         real most = 0;
         fill_plane(to, boundary, plane, [&](const Index<D>& first, int count, real* row) {
             std::copy_n(from.data() + from.linear(first), count, row);
@@ -247,7 +240,7 @@ real fill_planes_and_measure(Padded<D>& to, const Grid<real, D>& from, const Bou
 
 template <int D>
 void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes) {
-    for_each_plane(0, q.extent()[D - 1], [&](int plane) { fill_plane_ghosts(q, boundary, plane); });
+    for_each_plane(q.extent(), [&](int plane) { fill_plane_ghosts(q, boundary, plane); });
     fill_end_planes(q, boundary, ghost_planes);
 }
 

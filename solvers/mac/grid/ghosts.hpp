@@ -19,10 +19,10 @@ inline constexpr int ghost_layers = 3;  // a cubic stencil at a point clamped to
 template <int D>
 class Padded {
 public:
-    Padded() { extent_.fill(0); }
-    explicit Padded(const Index<D>& extent) : extent_(extent), values_(extent + Index<D>::constant(2 * ghost_layers), 0, ghost_layers) {}
+    Padded() = default;
+    explicit Padded(const Extent<D>& extent) : extent_(extent), values_(extent + Index<D>::constant(2 * ghost_layers), 0, ghost_layers) {}
 
-    const Index<D>& extent() const { return extent_; }
+    const Extent<D>& extent() const { return extent_; }
     bool empty() const { return values_.empty(); }
     std::ptrdiff_t stride(int axis) const { return values_.stride(axis); }
     std::size_t linear(const Index<D>& I) const { return values_.linear(I + Index<D>::constant(ghost_layers)); }
@@ -42,7 +42,7 @@ public:
     std::size_t bytes() const { return values_.bytes(); }
 
 private:
-    Index<D> extent_;
+    Extent<D> extent_;
     Grid<real, D> values_;
 };
 
@@ -86,15 +86,15 @@ template <int D>
 void fill(Padded<D>& to, const Grid<real, D>& from, const Boundary<D>& boundary);
 /// Fills the ghost layers from the values of the inner box.
 template <int D>
-void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = 0);
+void fill_ghosts(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = ghost_layers);
 
 /// The two halves of fill_ghosts: the ghosts within one plane, and then the planes beyond both ends of the last axis. In parallel these
-/// include the ghost planes of other ranks, to the depth of the step or to the given depth. A subdomain boundary is a side filled by
+/// include `ghost_planes` planes of other ranks. A subdomain boundary is a side filled by
 /// another rank.
 template <int D>
 void fill_plane_ghosts(Padded<D>& q, const Boundary<D>& boundary, int plane);
 template <int D>
-void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = 0);
+void fill_end_planes(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = ghost_layers);
 /// The same for several arrays, exchanged in one message. The last axis must be periodic for all of them or for none.
 template <int D>
 struct WithBoundary {
@@ -102,12 +102,12 @@ struct WithBoundary {
     const Boundary<D>* boundary;
 };
 template <int D>
-void fill_end_planes(const std::vector<WithBoundary<D>>& list, int ghost_planes = 0);
+void fill_end_planes(const std::vector<WithBoundary<D>>& list, int ghost_planes = ghost_layers);
 template <int D>
-void refresh(const std::vector<WithBoundary<D>>& list, int ghost_planes = 0);
+void refresh(const std::vector<WithBoundary<D>>& list, int ghost_planes = ghost_layers);
 /// In parallel, fills only the ghost planes of other ranks: where their values have changed and those beyond the sides have not.
 template <int D>
-void refresh(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = 0);
+void refresh(Padded<D>& q, const Boundary<D>& boundary, int ghost_planes = ghost_layers);
 
 /// For every row of one plane of the inner box: f(first, count, to) writes it; then fills the ghosts around it.
 template <int D, class F>
@@ -124,7 +124,7 @@ void fill_plane(Padded<D>& q, const Boundary<D>& boundary, int plane, F&& f) {
 /// The same for all planes, followed by the ghost planes.
 template <int D, class F>
 void fill_rows(Padded<D>& q, const Boundary<D>& boundary, F&& f) {
-    for_each_plane(0, q.extent()[D - 1], [&](int plane) { fill_plane(q, boundary, plane, f); });
+    for_each_plane(q.extent(), [&](int plane) { fill_plane(q, boundary, plane, f); });
     fill_end_planes(q, boundary);
 }
 /// As fill, without the planes beyond the ends of the last axis.

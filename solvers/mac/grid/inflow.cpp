@@ -42,7 +42,8 @@ void set_side_faces(MacVelocity<D>& u, const geometry::Sides<D>& sides, real nu)
         for (int end = 0; end < 2; ++end) {
             const auto& side = sides.side(a, end);
             if (side.kind == SideKind::periodic || side.kind == SideKind::outflow) continue;
-            Index<D> lo{}, hi = u[a].extent();
+            Index<D> lo{};
+            Extent<D> hi = u[a].extent();
             (end == 0 ? hi[a] : lo[a]) = end == 0 ? 1 : u.cells[a];
             for_each_in(lo, hi, [&](const Index<D>& I) {
                 u[a](I) = side.kind == SideKind::inflow ? inflow_velocity(sides, a, end, u, u.face_centre(a, I), nu)[a] : 0;

@@ -42,12 +42,12 @@ scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Part
 }
 
 template <int D>
-HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach) {
+const Slab* slab_of(const scene::Scene& scene, int ghost_planes) {
     const Partition cut = partition_in_scope(scene.index<D>("grid.cells")[D - 1]);
-    return HeldPlanes(cut, holds_own_planes(scene, cut), ghost_planes, geometry::Sides<D>(scene).periodic(D - 1), reach);
+    return weir::slab_of(cut, holds_own_planes(scene, cut) ? ghost_planes : 0, geometry::Sides<D>(scene).periodic(D - 1));
 }
 
-template HeldPlanes held_planes<2>(const scene::Scene& scene, int ghost_planes, int reach);
-template HeldPlanes held_planes<3>(const scene::Scene& scene, int ghost_planes, int reach);
+template const Slab* slab_of<2>(const scene::Scene&, int);
+template const Slab* slab_of<3>(const scene::Scene&, int);
 
 }  // namespace weir::mac

@@ -1,6 +1,6 @@
 // Distributed storage of a scene on a staggered grid: whether it is possible, and how.
 #pragma once
-#include "parallel/held_planes.hpp"
+#include "parallel/slab.hpp"
 #include "parallel/partition.hpp"
 #include "scene/replicated_work.hpp"
 #include "scene/scene.hpp"
@@ -16,8 +16,8 @@ bool holds_own_planes(const scene::Scene& scene, const Partition& cut);
 bool could_hold_own_planes(const scene::Scene& scene, const Partition& cut);
 /// The replicated work of the pressure solve: the small levels of a distributed "multigrid", the matrix of PETSc, otherwise all.
 scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Partition& cut);
-/// The storage of the scene's solver: distributed storage has `ghost_planes` planes.
+/// This rank's planes of the scene's grid, with `ghost_planes` ghost planes or, where whole fields are read on all ranks, memory for all.
 template <int D>
-HeldPlanes held_planes(const scene::Scene& scene, int ghost_planes, int reach = 1);
+const Slab* slab_of(const scene::Scene& scene, int ghost_planes);
 
 }  // namespace weir::mac

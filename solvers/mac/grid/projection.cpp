@@ -73,7 +73,7 @@ void flux_divergence_row(const MacState<D>& s, const Index<D>& first, int count,
 
 template <int D>
 real max_divergence(const MacState<D>& s) {
-    Index<D> rows = s.extent();
+    Extent<D> rows = s.extent();
     rows[0] = 1;
     return max_over(rows, [&](const Index<D>& I) {
         real largest = 0;
@@ -226,7 +226,7 @@ static void push_by_pressure(MacState<D>& s, real dt) {
 /// In parallel: distributed where the method supports it, otherwise replicated on each rank.
 template <int D>
 const poisson::Report& Projection<D>::solve(MacState<D>& s) {
-    if (!is_distributed()) return solver_->solve(s.p, rhs_);
+    if (!s.own().distributed()) return solver_->solve(s.p, rhs_);
     if (solver_->shares_planes()) {
         const poisson::Report& report = solver_->solve(s.p, rhs_);
         refresh(s.p, s.sides.periodic(D - 1));
@@ -234,7 +234,6 @@ const poisson::Report& Projection<D>::solve(MacState<D>& s) {
     }
     gather(rhs_);
     gather(s.p);
-    const AllPlanes all;
     return solver_->solve(s.p, rhs_);
 }
 

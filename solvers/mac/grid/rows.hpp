@@ -11,7 +11,7 @@ inline constexpr int row_block = 128;  // points processed together: a few kB of
 
 /// The extent of an array with one entry per row, and the entry of the row of I.
 template <int D>
-Index<D> rows_of(Index<D> extent) {
+Extent<D> rows_of(Extent<D> extent) {
     extent[0] = 1;
     return extent;
 }
@@ -29,8 +29,8 @@ void for_each_block(Index<D> I, int end, F&& f) {
 
 /// f(first, count) on blocks of rows covering [lo, hi), threaded over the slowest axis.
 template <int D, class F>
-void for_each_row(const Index<D>& lo, const Index<D>& hi, F&& f) {
-    Index<D> first_column = hi;
+void for_each_row(const Index<D>& lo, const Extent<D>& hi, F&& f) {
+    Extent<D> first_column = hi;
     first_column[0] = lo[0] + 1;
     for_each_in(lo, first_column, [&](const Index<D>& I) { for_each_block(I, hi[0], f); });
 }
@@ -54,7 +54,7 @@ template <int D>
 real max_magnitude(const Grid<real, D>& q, real zero = 0) {
     const int planes = q.extent()[D - 1];
     const std::size_t plane = planes > 0 ? q.size() / static_cast<std::size_t>(planes) : 0;
-    return plane_max(planes, [&](int k) {
+    return plane_max(q.own(), planes, [&](int k) {
         const real* values = q.data() + static_cast<std::size_t>(k) * plane;
         return largest_magnitude(values, plane, zero);
     });

@@ -35,9 +35,9 @@ Lattice<D>::Lattice(const scene::Scene& scene) : cells(scene.index<D>("grid.cell
 }
 
 template <int D>
-MacState<D>::MacState(const scene::Scene& scene, const FieldPlan& plan) : sides(scene) {
+MacState<D>::MacState(const scene::Scene& scene, const FieldPlan& plan, const Slab* slab) : sides(scene) {
     const Lattice<D> lattice(scene);
-    u = MacVelocity<D>(lattice.cells, lattice.h, lattice.origin);
+    u = MacVelocity<D>(Extent<D>(lattice.cells, OwnPlanes(slab)), lattice.h, lattice.origin);
     p = Grid<real, D>(u.cells);
     cells = Grid<poisson::Cell, D>(u.cells, poisson::Cell::fluid);
     for (const auto& name : plan.advected_fields()) {

@@ -67,11 +67,15 @@ struct MacState {
     real rho = 1;                             // density [kg/m³]
     real nu = 0;                              // kinematic viscosity [m²/s]; acts only through the effect "viscosity"
     real time = 0;                            // [s]
+    int reach = ghost_layers;                 // in parallel: number of ghost planes that the present step reads
 
     MacState() = default;
-    MacState(const scene::Scene& scene, const FieldPlan& plan);
+    /// `slab`: the planes of this rank; nullptr: all.
+    MacState(const scene::Scene& scene, const FieldPlan& plan, const Slab* slab = nullptr);
 
-    const Index<D>& extent() const { return u.cells; }
+    const Extent<D>& extent() const { return u.cells; }
+    /// The planes of this rank.
+    const OwnPlanes& own() const { return u.cells.own; }
     /// The advected field, or nullptr where it was not requested.
     Grid<real, D>* find(std::string_view name);
     const Grid<real, D>* find(std::string_view name) const;

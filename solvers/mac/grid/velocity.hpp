@@ -16,10 +16,10 @@ struct MacVelocity {
     std::array<Grid<real, D>, D> face;
     Vec<D> h{};       // cell size [m]
     Vec<D> origin{};  // lower corner of the domain [m]
-    Index<D> cells{};
+    Extent<D> cells{};
 
     MacVelocity() = default;
-    MacVelocity(const Index<D>& cells_, const Vec<D>& h_, const Vec<D>& origin_) : h(h_), origin(origin_), cells(cells_) {
+    MacVelocity(const Extent<D>& cells_, const Vec<D>& h_, const Vec<D>& origin_) : h(h_), origin(origin_), cells(cells_) {
         for (int a = 0; a < D; ++a) (*this)[a] = Grid<real, D>(cells + e<D>(a));
     }
     Grid<real, D>& operator[](int a) { return face[static_cast<std::size_t>(a)]; }
@@ -77,7 +77,8 @@ void for_each_inner_face(const MacVelocity<D>& u, int a, F&& f) {
 template <int D>
 struct Nodes {
     int axis;
-    Index<D> lo, hi;
+    Index<D> lo;
+    Extent<D> hi;
 };
 
 /// The faces along `axis` whose velocity is an unknown: inner faces, faces on open sides, and the joined face of a periodic axis.
@@ -90,7 +91,7 @@ Nodes<D> free_faces(const MacVelocity<D>& u, const geometry::Sides<D>& sides, in
 }
 
 template <int D>
-Nodes<D> all_cells(const Index<D>& cells) {
+Nodes<D> all_cells(const Extent<D>& cells) {
     return {-1, {}, cells};
 }
 
@@ -107,7 +108,8 @@ void sync_periodic(MacVelocity<D>& u, const geometry::Sides<D>& sides) {
     refresh(u[D - 1], sides.periodic(D - 1));
     for (int a = 0; a < D; ++a) {
         if (!sides.periodic(a)) continue;
-        Index<D> lo{}, hi = u[a].extent();
+        Index<D> lo{};
+        const Extent<D>& hi = u[a].extent();
         lo[a] = u.cells[a];
         for_each_in(lo, hi, [&](Index<D> I) {
             Index<D> first = I;

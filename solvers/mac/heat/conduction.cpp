@@ -50,7 +50,7 @@ real max_of_rows(const Index<D>& extent, F&& f) {
 }  // namespace
 
 template <int D>
-Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature)
+Conduction<D>::Conduction(const matter::Melting& melting, const Extent<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature)
     : melting_(melting),
       h_(h),
       rho_(rho),
@@ -66,7 +66,7 @@ Conduction<D>::Conduction(const matter::Melting& melting, const Index<D>& cells,
     std::iota(work_.begin(), work_.end(), 0);
     for (int a = 0; a < D; ++a) {
         cell_volume_ *= h[a];
-        Index<D> faces = cells;
+        Extent<D> faces = cells;
         ++faces[a];
         conductance_[static_cast<std::size_t>(a)] = Grid<real, D>(faces);
         even_faces_[static_cast<std::size_t>(a)] = Grid<real, D>(rows_of(faces), -1);
@@ -82,7 +82,7 @@ void Conduction<D>::prepare(const Grid<real, D>& H, const Given& given) {
     for (int a = 0; a < D; ++a) set_conductances(a);
     weaken_exchanges();
     find_rows_alike();
-    const Index<D> rows = alike_.extent();
+    const Extent<D>& rows = alike_.extent();
     most_conductance_ = max_over(rows, [&](const Index<D>& row) { return conducts_most(row); });
     const auto& cells = given.cells.values();
     const auto exchanges = [](real alpha) { return alpha > 0; };
@@ -205,7 +205,7 @@ void Conduction<D>::weaken_exchanges() {
             const real alpha = exchange_[static_cast<std::size_t>(2 * a + end)];
             if (alpha == 0) continue;
             auto& g = conductance_[static_cast<std::size_t>(a)];
-            Index<D> side = g.extent();
+            Extent<D> side = g.extent();
             side[a] = 1;
             for_each_cell(side, [&](Index<D> I) {
                 if (end == 1) I[a] = g.extent()[a] - 1;

@@ -25,7 +25,7 @@ class Conduction {
 public:
     Conduction() = default;
     /// `temperature`: the boundary conditions of the sides.
-    Conduction(const matter::Melting& melting, const Index<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
+    Conduction(const matter::Melting& melting, const Extent<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
     /// Sets another melting law: at another pressure, for instance.
     void set_melting(const matter::Melting& melting) { melting_ = melting, known_ = false; }
     /// Mass per volume of the fluid's cells, where it differs from the density [kg/m³].

@@ -97,7 +97,7 @@ const Grid<real, D>& HeatSupply<D>::at(real t, real dt, const MacState<D>& s, Co
     if (source_.empty()) return source_;
     source_.fill(0);
     for (const Flux& flux : fluxes_) {
-        Index<D> side = s.extent();
+        Extent<D> side = s.extent();
         side[flux.axis] = 1;
         for_each_cell(side, [&](Index<D> I) {
             if (flux.end == 1) I[flux.axis] = s.extent()[flux.axis] - 1;

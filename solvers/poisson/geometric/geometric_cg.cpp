@@ -61,7 +61,7 @@ real GeometricCg<D>::total(F&& of) const {
 template <int D>
 void GeometricCg<D>::gather(const Natural<D>& problem, const Grid<real, D>& p) {
     const Layout<D>& at = hierarchy_.finest().at;
-    for_each_plane(0, at.planes(), [&](int q) {
+    for_each_plane(problem.own(), 0, at.planes(), [&](int q) {
         for (int j = 0; j < at.rows_in_plane(); ++j) {
             const int row = problem.row(q, j);
             if (problem.is_dry(row)) continue;
@@ -89,7 +89,7 @@ template <int D>
 real GeometricCg<D>::begin_at(const Natural<D>& problem, const Grid<real, D>& p, const Grid<real, D>& b) {
     at_zero_ = false;
     gather(problem, p);
-    for_each_plane(0, problem.planes(), [&](int q) { residual_plane(problem, p.data(), b, q); });
+    for_each_plane(problem.own(), 0, problem.planes(), [&](int q) { residual_plane(problem, p.data(), b, q); });
     gather_sums();
     return total([](const PlaneSums& s) { return s.rr; });
 }
@@ -107,7 +107,9 @@ real GeometricCg<D>::replace_residual(const Natural<D>& problem, Grid<real, D>& 
         residual_plane(problem, p.data(), b, q);
         if (begin_cycle) start_plane(finest, q);
     };
-    const auto exchange = [&](int) { refresh(p, finest.at.periodic[D - 1]); };
+    const auto exchange = [&](int) {
+        if (problem.own().distributed()) refresh(p, finest.at.periodic[D - 1]);
+    };
     if (begin_cycle)
         VCycle<D>(hierarchy_).down(0, 2, stages, exchange);
     else
@@ -179,7 +181,7 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
     report.iterations = 0;
     report.history.clear();
     bool begun = problem.clean(p);  // whether the cycle for r has begun
-    refresh(p, hierarchy_.finest().at.periodic[D - 1]);
+    if (problem.own().distributed()) refresh(p, hierarchy_.finest().at.periodic[D - 1]);
     real norm = std::sqrt(begun ? begin_at_zero(problem, b) : begin_at(problem, p, b));
     if (b_norm < 0) b_norm = begun ? norm : problem.norm(b);
     if (norm > b_norm || b_norm == 0) {

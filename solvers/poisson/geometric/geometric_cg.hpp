@@ -26,8 +26,6 @@ class GeometricCg {
 public:
     /// Returns false if the problem's shape is not supported: no other function may be called then.
     bool setup(const Natural<D>& problem);
-    /// In parallel: returns whether iterations are distributed. Otherwise each rank must do all of them.
-    bool share() { return hierarchy_.share(detail::own_share.cut); }
     /// Iterates on A p = b; fills the report except times, bytes and components. Returns false if it stopped because of slow convergence: p
     /// then contains the last iterate.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);

@@ -138,27 +138,26 @@ std::vector<Level<D>> levels_below(Level<D> finest) {
 template <int D>
 bool Hierarchy<D>::plan(const Natural<D>& problem) {
     Level<D> finest = finest_of<D>(problem.extent(), problem.periodic(), problem.axis_weight(), !problem.weighted());
-    const bool windowed = detail::own_share.kept > 0;
+    const Partition cut = problem.own().distributed() ? problem.own().partition() : Partition{};
     const auto same = [&](const Level<D>& other) {
         return other.at.n == finest.at.n && other.at.periodic == finest.at.periodic && other.plain_weight == finest.plain_weight &&
-               other.by_count == finest.by_count && windowed_ == windowed;
+               other.by_count == finest.by_count && other.cut == cut;
     };
     if (!levels_.empty() && same(levels_.front())) return true;
     levels_ = levels_below(std::move(finest));
-    shared_as_ = {};
-    windowed_ = windowed;
     if (levels_.empty()) return false;
-    window();
+    window(cut);
     lay_out();
     return true;
 }
 
 /// Distributed storage of the partitioned levels: each rank's own planes and adjacent ghost planes.
 template <int D>
-void Hierarchy<D>::window() {
+void Hierarchy<D>::window(const Partition& cut) {
     for (auto& level : levels_) level.held.clear();
+    windowed_ = !cut.empty();
     if (!windowed_) return;
-    share(detail::own_share.cut);
+    cut_levels(levels_, cut);
     for (auto& level : levels_)
         if (!level.cut.empty())
             level.held = planes_held(level.cut, communicator().rank(), level.at.planes(), 0, 1, level.at.periodic[D - 1]);
@@ -241,15 +240,6 @@ bool Hierarchy<D>::build(const Natural<D>& problem) {
 
 /// A level is distributed if it is large enough for messages and no coarse plane has children on two ranks. The coarsest level is
 /// replicated.
-template <int D>
-bool Hierarchy<D>::share(const Partition* cut) {
-    const bool known = cut == nullptr ? shared_as_.empty() : shared_as_ == *cut;
-    if (known) return !levels_.empty() && !levels_[0].cut.empty();
-    shared_as_ = cut == nullptr ? Partition{} : *cut;
-    cut_levels(levels_, shared_as_);
-    return !levels_.empty() && !levels_[0].cut.empty();
-}
-
 template <int D>
 void Hierarchy<D>::cut_levels(std::vector<Level<D>>& levels, const Partition& cut) {
     for (auto& level : levels) level.cut = {};

@@ -17,22 +17,19 @@ public:
     Level<D>& finest() { return levels_.front(); }
     /// Partitions the large levels like the finest one, or none.
     static void cut_levels(std::vector<Level<D>>& levels, const Partition& cut);
-    /// The same; returns whether the finest level is distributed.
-    bool share(const Partition* cut);
     /// u = A⁻¹ r on the coarsest level.
     void solve_coarsest();
     std::size_t bytes() const;
 
 private:
     bool plan(const Natural<D>& problem);
-    void window();
+    void window(const Partition& cut);
     void lay_out();
     void fill_ghosts(std::size_t l);
     void fill(const Natural<D>& problem, std::size_t l);
     void build_coarsest();
 
     std::vector<Level<D>> levels_;
-    Partition shared_as_{};        // the partition that the levels' ones were derived from
     bool windowed_ = false;  // distributed storage of the partitioned levels
     Arena arena_;
     SparseCholesky coarsest_;

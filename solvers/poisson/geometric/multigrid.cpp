@@ -16,7 +16,7 @@ public:
     void setup(const Operator<D>& A) override {
         const Stopwatch watch;
         extent_ = A.cells.extent();
-        problem_.build(A);
+        problem_.build(A, shared_planes(A));
         algebraic_.reset();
         geometric_fits_ = geometric_.setup(problem_);
         if (!geometric_fits_) set_up_algebraic();
@@ -30,7 +30,6 @@ public:
     /// then continues from its iterate. It is built when a solve first needs it; whether one does depends on that solve alone.
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) override {
         const Stopwatch watch;
-        geometric_.share();
         check_extents(p.extent() == extent_, "p");
         check_extents(b.extent() == extent_, "b");
         report_.iterations = 0;
@@ -52,7 +51,7 @@ public:
 
     /// A component without air would require removing the columns' means; the algebraic cycle does not support columns.
     const Report* solve(Grid<real, D>& p, Grid<real, D>& b, const LowRank& more) override {
-        if (!geometric_fits_ || problem_.closed() > 0 || is_distributed()) return nullptr;
+        if (!geometric_fits_ || problem_.closed() > 0 || problem_.own().distributed()) return nullptr;
         const Stopwatch watch;
         const bool solved = geometric_.solve(problem_, p, b, options_, report_, more);
         report_.solve_seconds = watch.seconds();
@@ -69,29 +68,29 @@ public:
 
     std::size_t bytes() const override { return problem_.bytes() + geometric_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0); }
 
-    bool shares_planes() const override { return geometric_fits_ && const_cast<GeometricCg<D>&>(geometric_).share(); }
+    bool shares_planes() const override { return problem_.own().distributed(); }
 
 private:
+    /// The planes of this rank where ranks can share the levels; otherwise each solves the whole problem.
+    static OwnPlanes shared_planes(const Operator<D>& A) {
+        const OwnPlanes& own = A.cells.own();
+        const bool shares = own.distributed() && multigrid_shares<D>(A.cells.extent(), A.periodic, A.axis_weight, own.partition());
+        return shares ? own : OwnPlanes();
+    }
     /// In parallel, replicated on each rank.
     const Report& continue_alone(Grid<real, D>& p, const Grid<real, D>& b) {
         if (algebraic_ == nullptr) set_up_algebraic();
-        if (!is_distributed()) return algebraic_->continue_solve(report_, p, b);
+        if (!problem_.own().distributed()) return algebraic_->continue_solve(report_, p, b);
         Grid<real, D> whole_b = b;
         gather(p);
         gather(whole_b);
-        const poisson::Report* report = nullptr;
-        {
-            const AllPlanes all;
-            report = &algebraic_->continue_solve(report_, p, whole_b);
-        }
+        const poisson::Report& report = algebraic_->continue_solve(report_, p, whole_b);
         p.store().close();
-        return *report;
+        return report;
     }
     void set_up_algebraic() {
         algebraic_ = std::make_unique<ConjugateGradient<D, AlgebraicMultigrid>>(options_);
-        const Operator<D> whole = problem_.as_operator();
-        const AllPlanes all;
-        algebraic_->setup(whole);
+        algebraic_->setup(problem_.as_operator());
     }
 
     Options options_;

@@ -14,15 +14,14 @@ constexpr auto solid = static_cast<std::uint8_t>(Cell::solid), fluid = static_ca
 }
 
 template <int D>
-void Natural<D>::build(const Operator<D>& A) {
+void Natural<D>::build(const Operator<D>& A, const OwnPlanes& own) {
     n_ = A.cells.extent();
     axis_weight_ = A.axis_weight;
     const bool cubic = std::all_of(axis_weight_.begin(), axis_weight_.end(), [&](real w) { return w == axis_weight_[0]; });
     weighted_ = !A.weight[0].empty() || !cubic;
     for (int a = 0; a < D; ++a) periodic_[static_cast<std::size_t>(a)] = A.periodic[static_cast<std::size_t>(a)] && n_[a] > 1;
-    windowed_ = A.cells.store().windowed();
-    own_ = {0, planes()};
-    if (windowed_) own_ = {detail::own_share.lower(0), detail::own_share.upper(planes())};
+    own_ = own;
+    planes_ = {own_.lower(0), own_.upper(planes())};
     copy_cells(A);
     count_faces();
     clean_faces(A);
@@ -46,7 +45,7 @@ void Natural<D>::copy_cells(const Operator<D>& A) {
     const int nx = n_[0], rows = planes() * rows_in_plane();
     const std::uint8_t outside = weighted_ ? air : solid;
     const auto row_entries = static_cast<std::size_t>(nx + 2);
-    cells_.resize(row_entries, row_entries * static_cast<std::size_t>(rows_in_plane()), planes(), 0);
+    cells_.resize(own_.slab, row_entries, row_entries * static_cast<std::size_t>(rows_in_plane()), planes(), 0);
     std::fill_n(cells_.data(), row_entries, outside);
     wet_.resize(static_cast<std::size_t>(rows));
     const Cell* from = A.cells.data();
@@ -68,8 +67,8 @@ void Natural<D>::count_faces() {
     if (weighted_)
         count_ = {};
     else
-        count_.resize(0, plane, planes(), 0);
-    parallel_for(own_.begin, weighted_ ? own_.begin : own_.end, [&](int q) {
+        count_.resize(own_.slab, 0, plane, planes(), 0);
+    parallel_for(planes_.begin, weighted_ ? planes_.begin : planes_.end, [&](int q) {
         for (int j = 0; j < rows_in_plane(); ++j) {
             const std::uint8_t* c = cells(row(q, j));
             std::array<const std::uint8_t*, 2 * D> beside{c - 1, c + 1};
@@ -99,8 +98,8 @@ void Natural<D>::clean_faces(const Operator<D>& A) {
         const real scale = self ? 0 : axis_weight_[a];
         const int planes_of_faces = n_[D - 1] + (a == D - 1 ? 1 : 0), rows_of_faces = D == 2 ? 1 : n_[1] + (a == 1 ? 1 : 0);
         const int entries = n_[0] + (a == 0 ? 1 : 0);
-        clean.resize(0, static_cast<std::size_t>(entries) * static_cast<std::size_t>(rows_of_faces), planes_of_faces, 0);
-        parallel_for(own_.begin, own_.end + (a == D - 1 ? 1 : 0), [&](int q) {
+        clean.resize(own_.slab, 0, static_cast<std::size_t>(entries) * static_cast<std::size_t>(rows_of_faces), planes_of_faces, 0);
+        parallel_for(planes_.begin, planes_.end + (a == D - 1 ? 1 : 0), [&](int q) {
             for (int j = 0; j < rows_of_faces; ++j) {
                 const int t = a == D - 1 ? q : j;  // index of the face along a > 0
                 const bool last = a > 0 && t == n_[a];
@@ -134,7 +133,7 @@ void Natural<D>::find_runs() {
     run_start_.assign(1, 0);
     runs_.clear();
     fluid_cells_ = 0;
-    for (int q = own_.begin; q < own_.end; ++q)
+    for (int q = planes_.begin; q < planes_.end; ++q)
         for (int j = 0; j < rows_in_plane(); ++j) {
             const auto* c = cells(row(q, j));
             const real* w = weighted_ ? faces(0, q, j) : nullptr;
@@ -148,17 +147,17 @@ void Natural<D>::find_runs() {
             }
             run_start_.push_back(static_cast<int>(runs_.size()));
         }
-    if (windowed_) gather_runs();
+    if (own_.distributed()) gather_runs();
     refill_scratch<real>(sum_, runs_.size(), 0);
 }
 
 /// In parallel, those of all ranks: there are few per row.
 template <int D>
 void Natural<D>::gather_runs() {
-    const Partition& cut = *detail::own_share.cut;
+    const Partition& cut = own_.partition();
     const auto rows = static_cast<std::size_t>(planes() * rows_in_plane());
     std::vector<int> count(rows);
-    const auto first = static_cast<std::size_t>(own_.begin * rows_in_plane());
+    const auto first = static_cast<std::size_t>(planes_.begin * rows_in_plane());
     for (std::size_t r = 0; r + 1 < run_start_.size(); ++r) count[first + r] = run_start_[r + 1] - run_start_[r];
     communicator().gather(cut, {count.data(), sizeof(int) * static_cast<std::size_t>(rows_in_plane()), planes()});
     run_start_.assign(1, 0);
@@ -190,9 +189,9 @@ void Natural<D>::find_closed() {
     };
     const auto join = [&](const Run* a, const Run* b) {
         const auto i = static_cast<int>(a - runs_.data()), k = static_cast<int>(b - runs_.data());
-        if (join_runs(i, k) && windowed_) joined.push_back({i, k});
+        if (join_runs(i, k) && own_.distributed()) joined.push_back({i, k});
     };
-    for (int q = own_.begin; q < own_.end; ++q)
+    for (int q = planes_.begin; q < planes_.end; ++q)
         for (int j = 0; j < rows_in_plane(); ++j) {
             const int here = row(q, j);
             if (periodic_[0] && runs_begin(here) != runs_end(here)) {
@@ -214,11 +213,11 @@ void Natural<D>::find_closed() {
                 }
             }
         }
-    if (windowed_)
+    if (own_.distributed())
         for (const auto& [i, k] : of_all_ranks(joined)) join_runs(i, k);
     for (std::size_t k = 0; k < parent.size(); ++k) parent[k] = root(static_cast<int>(k));
     mark_open();
-    if (windowed_) gather_open();
+    if (own_.distributed()) gather_open();
     refill_scratch(number_, runs_.size(), -1);
     closed_ = 0;
     for (std::size_t k = 0; k < runs_.size(); ++k)
@@ -235,7 +234,7 @@ void Natural<D>::find_closed() {
 template <int D>
 void Natural<D>::mark_open() {
     refill_scratch<char>(open_, runs_.size(), 0);
-    for (int q = own_.begin; q < own_.end; ++q)
+    for (int q = planes_.begin; q < planes_.end; ++q)
         for (int j = 0; j < rows_in_plane(); ++j)
             for (const Run* run = runs_begin(row(q, j)); run != runs_end(row(q, j)); ++run) {
                 auto& is_open = open_[static_cast<std::size_t>(root_[static_cast<std::size_t>(run - runs_.data())])];
@@ -265,22 +264,21 @@ void Natural<D>::gather_open() {
 
 template <int D>
 Operator<D> Natural<D>::as_operator() const {
-    const Partition* const cut = windowed_ ? detail::own_share.cut : nullptr;
-    const AllPlanes whole;
+    const Partition* const cut = own_.distributed() ? &own_.partition() : nullptr;
     Operator<D> A;
-    A.cells = Grid<Cell, D>(n_);
-    for (int row = own_.begin * rows_in_plane(); row < own_.end * rows_in_plane(); ++row)
+    A.cells = Grid<Cell, D>(replicated(n_));
+    for (int row = planes_.begin * rows_in_plane(); row < planes_.end * rows_in_plane(); ++row)
         std::memcpy(A.cells.data() + static_cast<std::ptrdiff_t>(row) * n_[0], cells(row), static_cast<std::size_t>(n_[0]));
     A.periodic = periodic_;
     if (!weighted_) A.axis_weight = axis_weight_;
     for (std::size_t a = 0; weighted_ && a < D; ++a) {
-        A.weight[a] = Grid<real, D>(n_ + e<D>(static_cast<int>(a)));
+        A.weight[a] = Grid<real, D>(replicated(n_ + e<D>(static_cast<int>(a))));
         if (!cut)
             std::copy_n(faces_[a].data(), faces_[a].size(), A.weight[a].data());
         else
-            std::copy_n(faces_[a].data() + face_offset(static_cast<int>(a), own_.begin, 0),
-                        face_offset(static_cast<int>(a), own_.end + (a == D - 1 ? 1 : 0) - own_.begin, 0),
-                        A.weight[a].data() + face_offset(static_cast<int>(a), own_.begin, 0));
+            std::copy_n(faces_[a].data() + face_offset(static_cast<int>(a), planes_.begin, 0),
+                        face_offset(static_cast<int>(a), planes_.end + (a == D - 1 ? 1 : 0) - planes_.begin, 0),
+                        A.weight[a].data() + face_offset(static_cast<int>(a), planes_.begin, 0));
         if (cut) communicator().gather(*cut, planes_of(A.weight[a]));
     }
     if (cut) communicator().gather(*cut, planes_of(A.cells));
@@ -295,8 +293,8 @@ std::size_t Natural<D>::bytes() const {
     return sum + (size_.capacity() + mean_.capacity() + sum_.capacity()) * sizeof(real);
 }
 
-template void Natural<2>::build(const Operator<2>&);
-template void Natural<3>::build(const Operator<3>&);
+template void Natural<2>::build(const Operator<2>&, const OwnPlanes&);
+template void Natural<3>::build(const Operator<3>&, const OwnPlanes&);
 template int Natural<2>::neighbour(int, int, int, int) const;
 template int Natural<3>::neighbour(int, int, int, int) const;
 template Operator<2> Natural<2>::as_operator() const;

@@ -17,12 +17,14 @@ struct Run {
 template <int D>
 class Natural {
 public:
-    void build(const Operator<D>& A);
+    /// `own`: the planes that this rank solves for; without a partition every rank solves for all planes, and A must be whole.
+    void build(const Operator<D>& A, const OwnPlanes& own);
 
     /// An operator with the same matrix; in parallel, whole on all ranks.
     Operator<D> as_operator() const;
 
     const Index<D>& extent() const { return n_; }
+    const OwnPlanes& own() const { return own_; }
     bool weighted() const { return weighted_; }
     const Vec<D>& axis_weight() const { return axis_weight_; }
     const std::array<bool, D>& periodic() const { return periodic_; }
@@ -86,7 +88,7 @@ private:
     template <class T>
     void gather_by_runs(T* values) const {
         first_runs_.clear();
-        for (const int plane : detail::own_share.cut->at) {
+        for (const int plane : own_.partition().at) {
             const std::size_t row = static_cast<std::size_t>(plane) * static_cast<std::size_t>(rows_in_plane());
             first_runs_.push_back(static_cast<std::size_t>(run_start_[row]));
         }
@@ -98,7 +100,7 @@ private:
     /// f(row), threaded over all rows; in parallel, over those of this rank's planes.
     template <class F>
     void for_each_row_of_own(F&& f) const {
-        const int rows = rows_in_plane(), begin = detail::own_share.lower(0), end = detail::own_share.upper(planes());
+        const int rows = rows_in_plane(), begin = own_.lower(0), end = own_.upper(planes());
         parallel_for(begin * rows, end * rows, f);
     }
     bool is_wet(int row) const { return row >= 0 && wet_[static_cast<std::size_t>(row)] != dry; }
@@ -112,8 +114,8 @@ private:
     PlaneStore<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
     std::vector<std::uint8_t> wet_;           // amount of fluid in each row
     std::array<PlaneStore<real>, D> faces_;
-    PlaneRange own_{0, 0};  // the planes that this rank computes, all where it stores all
-    bool windowed_ = false;
+    OwnPlanes own_{};
+    PlaneRange planes_{0, 0};  // own_ within the grid
     std::vector<int> run_start_;
     std::vector<Run> runs_;
     int closed_ = 0;

@@ -87,7 +87,7 @@ void Natural<D>::sum_row(int row, const real* values) const {
 /// In parallel, receives the sums of the other ranks' runs.
 template <int D>
 void Natural<D>::gather_sums() const {
-    if (!is_distributed() || closed_ == 0) return;
+    if (!own_.distributed() || closed_ == 0) return;
     gather_by_runs(sum_.data());
 }
 
@@ -121,7 +121,7 @@ void Natural<D>::subtract_means(Grid<real, D>& p) const {
 
 template <int D>
 real Natural<D>::norm(const Grid<real, D>& b) const {
-    return std::sqrt(plane_sum(planes(), [&](int q) {
+    return std::sqrt(plane_sum(own_, planes(), [&](int q) {
         real sum = 0;
         for (int row = q * rows_in_plane(); row < (q + 1) * rows_in_plane(); ++row) {
             const real* v = b.data() + static_cast<std::ptrdiff_t>(row) * n_[0];
@@ -149,7 +149,7 @@ void Natural<D>::clear_outside(int row, real* values) const {
 
 template <int D>
 bool Natural<D>::clean(Grid<real, D>& p) const {
-    const real nonzero = plane_sum(planes(), [&](int q) {
+    const real nonzero = plane_sum(own_, planes(), [&](int q) {
         int found = 0;
         for (int row = q * rows_in_plane(); row < (q + 1) * rows_in_plane(); ++row) {
             real* v = p.data() + static_cast<std::ptrdiff_t>(row) * n_[0];

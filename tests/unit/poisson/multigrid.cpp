@@ -45,7 +45,7 @@ TEST_IN_2D_AND_3D("the V-cycle is symmetric and positive definite: x.My = y.Mx, 
         int number = 0;
         for (const auto& A : varied<D>(extent)) {
             poisson::Natural<D> problem;
-            problem.build(A);
+            problem.build(A, {});
             poisson::GeometricCg<D> cg;
             if (!cg.setup(problem)) continue;
             // Air, solids and closed components carry no residual.
