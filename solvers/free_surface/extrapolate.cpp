@@ -26,7 +26,7 @@ bool Extrapolation<D>::step(Index<D>& I, int a, int axis, int by) const {
 
 template <int D>
 void Extrapolation<D>::find_band_rows(const LevelSet<D>& surface, int layers) {
-    std::fill(band_rows_.begin(), band_rows_.end(), Extent{frame_.cells[0], 0});
+    std::fill(band_rows_.begin(), band_rows_.end(), Segment{frame_.cells[0], 0});
     for (std::size_t i = 0; i < surface.layer_end(layers); ++i) {
         Index<D> I = surface.band()[i];
         const int x = I[0];
@@ -50,7 +50,7 @@ void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const Lev
             return surface.phi.linear(J);
         };
         const std::size_t above = has_above ? row_at(I[a]) : 0, below = has_below && a > 0 ? row_at(I[a] - 1) : above;
-        Extent extent{frame_.cells[0], 0};
+        Segment extent{frame_.cells[0], 0};
         if (has_above) extent.join(band_rows_[above / n]);
         if (has_below) extent.join(band_rows_[below / n]);
         if (extent.empty()) return;
@@ -210,10 +210,10 @@ real Extrapolation<D>::value(const Grid<real, D>& u, const Grid<std::uint8_t, D>
 template <int D>
 template <class F>
 void Extrapolation<D>::for_each_own(F&& f) {
-    if (!is_distributed()) return parallel_for(0, static_cast<int>(front_.size()), f);
+    if (!frame_.own().distributed()) return parallel_for(0, static_cast<int>(front_.size()), f);
     own_.clear();
     for (std::size_t i = 0; i < front_.size(); ++i)
-        if (is_own_plane(front_[i][D - 1])) own_.push_back(static_cast<int>(i));
+        if (frame_.own().contains(front_[i][D - 1])) own_.push_back(static_cast<int>(i));
     parallel_for(0, static_cast<int>(own_.size()), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }
 
@@ -224,14 +224,14 @@ void Extrapolation<D>::refresh_marks(FaceMarks<D>& marks, int layers) {
     const int ghost_planes = layers + slope_reach;
     const bool ring = frame_.periodic(D - 1);
     for (std::size_t last = 0; last < 2; ++last)
-        near_of_[last] = planes_near(frame_.cells[D - 1] + static_cast<int>(last), ghost_planes, ring);
-    if (!is_distributed()) return;
+        near_of_[last] = planes_near(frame_.own().slab, frame_.cells[D - 1] + static_cast<int>(last), ghost_planes, ring);
+    if (!frame_.own().distributed()) return;
     std::array<Planes, D> all;
     for (std::size_t a = 0; a < D; ++a) {
         marks[a].store().open(ghost_planes + 1, ring);
         all[a] = planes_of(marks[a]);
     }
-    communicator().refresh(*detail::own_share.cut, all, ghost_planes + 1, ring);
+    communicator().refresh(frame_.own().partition(), all, ghost_planes + 1, ring);
 }
 
 template <int D>
@@ -247,7 +247,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
         front_.clear();
         start_front(mark, a, surface, near);
         for (const Index<D>& face : in_solids[static_cast<std::size_t>(a)]) join_front(mark, a, face);
-        for (int layer = 1; layer <= layers && (is_distributed() || !front_.empty()); ++layer) {  // another rank may have a front
+        for (int layer = 1; layer <= layers && (frame_.own().distributed() || !front_.empty()); ++layer) {  // another rank may have a front
             if (layer > 1) refresh(u[a], frame_.periodic(D - 1), layer == 2 ? behind : 1);
             resize_scratch(value_, front_.size());
             for_each_own([&](int i) {
@@ -255,7 +255,7 @@ void Extrapolation<D>::operator()(MacVelocity<D>& u, FaceMarks<D>& marks, const 
                 value_[at] = value(u[a], mark, surface.phi, front_[at], a, layer);
             });
             for (std::size_t i = 0; i < front_.size(); ++i) {
-                if (is_own_plane(front_[i][D - 1])) u[a](front_[i]) = value_[i];
+                if (frame_.own().contains(front_[i][D - 1])) u[a](front_[i]) = value_[i];
                 mark(front_[i]) = static_cast<std::uint8_t>(layer + 1);
             }
             if (layer < layers) grow_front(mark, a);

@@ -33,7 +33,7 @@ public:
     void operator()(MacVelocity<D>& u, FaceMarks<D>& mark, const LevelSet<D>& surface, const FaceLists<D>& in_solids, int layers);
     std::size_t bytes() const {
         return (front_.capacity() + next_.capacity()) * sizeof(Index<D>) + value_.capacity() * sizeof(real) +
-               own_.capacity() * sizeof(int) + band_rows_.capacity() * sizeof(Extent) + joins_.capacity();
+               own_.capacity() * sizeof(int) + band_rows_.capacity() * sizeof(Segment) + joins_.capacity();
     }
 
 private:
@@ -58,7 +58,7 @@ private:
     std::vector<int> own_;                      // in parallel: indices in the front of the faces that this rank owns
     std::array<std::vector<char>, 2> near_of_;  // planes searched for layers, for faces along other axes and along the last
     std::vector<char> near_;                    // those of the present faces
-    std::vector<Extent> band_rows_;             // per row of cells, the part within the layers from which the first front starts
+    std::vector<Segment> band_rows_;             // per row of cells, the part within the layers from which the first front starts
     std::vector<std::uint8_t> joins_;           // of one row of faces
 };
 

@@ -35,7 +35,7 @@ inline Interval locate(real s, int n, int period) {
 
 template <int D>
 struct Frame {
-    Index<D> cells{};
+    Extent<D> cells{};  // with the planes of this rank
     Vec<D> h{}, inv_h{}, origin{};
     std::array<int, D> period{};  // cells of a periodic axis; 0: the axis has ends
 
@@ -46,6 +46,7 @@ struct Frame {
             period[static_cast<std::size_t>(d)] = sides.periodic(d) ? cells[d] : 0;
         }
     }
+    const OwnPlanes& own() const { return cells.own; }
     bool periodic(int axis) const { return period[static_cast<std::size_t>(axis)] > 0; }
     /// The smallest cell size [m].
     real h_min() const { return *std::min_element(h.begin(), h.end()); }
@@ -114,25 +115,25 @@ struct Frame {
 };
 
 /// Entries [begin, end) of a line; empty where begin is not below end.
-struct Extent {
+struct Segment {
     int begin, end;
     bool empty() const { return begin >= end; }
-    void join(const Extent& other) { begin = std::min(begin, other.begin), end = std::max(end, other.end); }
+    void join(const Segment& other) { begin = std::min(begin, other.begin), end = std::max(end, other.end); }
 };
 
 /// Halo exchange of `ghost_planes` planes of faces, all components in one message per neighbour. Across a periodic boundary face n is face
 /// 0.
 template <int D>
 void refresh_faces(std::array<Grid<real, D>, D>& u, const Frame<D>& frame, int ghost_planes) {
-    if (!is_distributed()) return;
+    if (!frame.own().distributed()) return;
     std::array<Planes, D> all;
     for (std::size_t a = 0; a < D; ++a) {
         u[a].store().open(ghost_planes, frame.periodic(D - 1));
         all[a] = planes_of(u[a]);
     }
-    communicator().refresh(*detail::own_share.cut, all, ghost_planes, frame.periodic(D - 1));
+    communicator().refresh(frame.own().partition(), all, ghost_planes, frame.periodic(D - 1));
     const int n = frame.cells[D - 1];
-    if (!frame.periodic(D - 1) || is_own_plane(n)) return;
+    if (!frame.periodic(D - 1) || frame.own().contains(n)) return;
     Grid<real, D>& across = u[D - 1];
     if (!across.store().holds(0) || !across.store().holds(n)) return;
     std::copy_n(across.data(), across.stride(D - 1), across.data() + n * across.stride(D - 1));
@@ -144,8 +145,8 @@ void refresh_faces(MacVelocity<D>& u, const Frame<D>& frame, int ghost_planes) {
 
 /// f(I, at) for the first entry I of every line along x of a box, and its linear index; threaded over the slowest axis.
 template <int D, class F>
-void for_each_line(const Index<D>& extent, F&& f) {
-    Index<D> columns = extent;
+void for_each_line(const Extent<D>& extent, F&& f) {
+    Extent<D> columns = extent;
     columns[0] = 1;
     for_each_in(Index<D>{}, columns, [&](const Index<D>& I) {
         std::size_t at = 0;
@@ -157,7 +158,7 @@ void for_each_line(const Index<D>& extent, F&& f) {
 /// inner(face, cell, count) on runs along x of faces along a with a cell on both sides: linear indices of the first face and of the cell
 /// above it. outer(I, face) on each of the others, which lie on a side of the domain or on a periodic boundary.
 template <int D, class F, class G>
-void for_each_face_run(const Index<D>& cells, int a, F&& inner, G&& outer) {
+void for_each_face_run(const Extent<D>& cells, int a, F&& inner, G&& outer) {
     const auto n = static_cast<std::size_t>(cells[0]);
     for_each_line(cells + e<D>(a), [&](Index<D> I, std::size_t face) {
         if (a > 0 && (I[a] == 0 || I[a] == cells[a])) {

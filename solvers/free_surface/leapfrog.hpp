@@ -38,10 +38,6 @@ public:
     /// u at time(), the time of surface and markers, on this rank's own planes and one ghost plane.
     const MacVelocity<D>& at_end(const MacVelocity<D>& u, const Frame<D>& frame) const;
 
-    /// In parallel (MPI), gathers the rate of change of all ranks.
-    void gather_whole() {
-        for (auto& rate : rate_.face) gather(rate);
-    }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
     std::size_t bytes() const { return rate_.bytes() + at_end_.bytes(); }

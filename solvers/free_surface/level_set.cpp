@@ -63,7 +63,7 @@ void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::arr
         find_near();
         refresh(closed_, frame_.periodic(D - 1), wide() + 1);
     }
-    find_skin(planes_near(frame_.cells[D - 1], skin_layers, frame_.periodic(D - 1)));
+    find_skin(planes_near(frame_.own().slab, frame_.cells[D - 1], skin_layers, frame_.periodic(D - 1)));
     if (communicator().several()) share_skin(distributed);
     walls_.find(frame_, closed_, skin_, faces, wide() + 1);
 }
@@ -76,7 +76,7 @@ void LevelSet<D>::uncover(const Grid<std::uint8_t, D>& closed) {
     refresh(phi, ring, ThinWalls<D>::thickest + 1);
     std::vector<std::pair<std::size_t, real>> left;
     for (const Index<D>& I : skin_)
-        if (is_own_plane(I[D - 1]) && closed(I) == 0)
+        if (frame_.own().contains(I[D - 1]) && closed(I) == 0)
             if (const real both = walls_.on_both_sides(closed_, phi, I); both > phi(I)) left.emplace_back(phi.linear(I), both);
     for (const auto& [cell, both] : left) phi[cell] = both;
     refresh(phi, ring, wide());
@@ -90,7 +90,7 @@ void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
     if (distributed) open_part_.store().open(wide() + 1, ring);
     for (const CellBox<D>& box : solids.changed())
         for_each_held(open_part_, box.lo, box.hi, [&](const Index<D>& I) {
-            if (distributed && (!is_own_plane(I[D - 1]) || !solids.holds_corners(I[D - 1]))) return;
+            if (distributed && (!frame_.own().contains(I[D - 1]) || !solids.holds_corners(I[D - 1]))) return;
             real mean = 0, least = infinity;
             Vec<D> slope{};
             for (unsigned corner = 0; corner < 1U << D; ++corner) {
@@ -133,13 +133,13 @@ void LevelSet<D>::find_skin(const std::vector<char>& planes) {
 template <int D>
 void LevelSet<D>::share_skin(bool distributed) {
     std::vector<std::size_t> rim, near;
-    for_each_open_beside_closed(planes_near(frame_.cells[D - 1], 0, false), [&](const Index<D>& I) {
+    for_each_open_beside_closed(planes_near(frame_.own().slab, frame_.cells[D - 1], 0, false), [&](const Index<D>& I) {
         bool beside = false;
         for_each_beside(frame_, I, [&](const Index<D>& J) { beside = beside || closed_(J); });
         if (beside) rim.push_back(phi.linear(I));
     });
     for (const Index<D>& I : skin_)
-        if (is_own_plane(I[D - 1])) near.push_back(phi.linear(I));
+        if (frame_.own().contains(I[D - 1])) near.push_back(phi.linear(I));
     std::sort(near.begin(), near.end());
     if (distributed) rim = of_all_ranks(rim), near = of_all_ranks(near);
     skin_of_ranks_.find(frame_, std::move(rim), near, skin_layers, skin_, skin_end_);
@@ -151,7 +151,7 @@ static constexpr std::uint8_t continued = 254;  // not a layer of the band
 template <int D>
 void LevelSet<D>::continue_into_solids() {
     if (skin_.empty()) return;
-    if (is_distributed()) return skin_of_ranks_.continue_into(phi, skin_);
+    if (frame_.own().distributed()) return skin_of_ranks_.continue_into(phi, skin_);
     for (const Index<D>& I : skin_) layer_(I) = 0;
     std::size_t first = 0;
     for (const std::size_t last : skin_end_) {
@@ -183,10 +183,10 @@ void LevelSet<D>::continue_layer(std::size_t first, std::size_t last) {
 
 template <int D>
 void LevelSet<D>::find_own() {
-    if (!is_distributed()) return;
+    if (!frame_.own().distributed()) return;
     own_.clear();
     for (std::size_t i = 0; i < band_.size(); ++i)
-        if (is_own_plane(band_[i][D - 1])) own_.push_back(static_cast<int>(i));
+        if (frame_.own().contains(band_[i][D - 1])) own_.push_back(static_cast<int>(i));
 }
 
 template <int D>
@@ -378,10 +378,7 @@ std::size_t LevelSet<D>::correct_with_particles(const Markers<D>& markers, const
             for (int l = 0; l < count; ++l) escaped_[p + static_cast<std::size_t>(l)] = distance[l] > margin;
         }
     };
-    {
-        const AllPlanes all;  // ghost markers included: their spheres reach this rank's cells
-        markers.for_each_occupied_cell(frame_, find_escaped);
-    }
+    markers.for_each_held_cell(frame_, find_escaped);  // the spheres of ghost markers reach this rank's cells
     if (!frame_.cubic()) for_each_escaped([&](std::size_t p) { escaped_[p] = escaped_across(markers.position(p)); });
     std::size_t count = 0;
     for_each_escaped([&, begin = first, end = last](std::size_t p) {

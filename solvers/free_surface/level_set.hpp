@@ -47,7 +47,6 @@ public:
     void advect(const MacVelocity<D>& u, real dt, int reach = 0);
     /// In parallel, gathers φ from all ranks.
     void gather_whole() { gather(phi); }
-    void make_layers_whole() { gather(layer_); }
     /// Particle level-set correction: unites the liquid with spheres around escaped markers. Returns how many of this rank's own markers
     /// had escaped. Markers must be sorted. `part`, if given: the liquid fraction of each cell; a marker in a cell without liquid is
     /// ignored.
@@ -153,7 +152,7 @@ private:
 template <int D>
 template <class F>
 void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const {
-    if (!is_distributed()) return parallel_for(static_cast<int>(first), static_cast<int>(last), f);
+    if (!frame_.own().distributed()) return parallel_for(static_cast<int>(first), static_cast<int>(last), f);
     const auto place = [&](std::size_t at) { return std::lower_bound(own_.begin(), own_.end(), static_cast<int>(at)) - own_.begin(); };
     parallel_for(static_cast<int>(place(first)), static_cast<int>(place(last)), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }

@@ -39,9 +39,9 @@ void LevelSet<D>::find_inside() {
 /// In parallel, the planes in which this rank finds the band.
 template <int D>
 void LevelSet<D>::find_near() {
-    if (!is_distributed() || !near_.empty()) return;
+    if (!frame_.own().distributed() || !near_.empty()) return;
     const bool ring = frame_.periodic(D - 1);
-    near_ = planes_near(frame_.cells[D - 1], wide(), ring);
+    near_ = planes_near(frame_.own().slab, frame_.cells[D - 1], wide(), ring);
     for (auto* bytes : {&layer_, &inside_, &closed_}) bytes->store().open(wide() + 1, ring);
 }
 
@@ -51,8 +51,7 @@ void LevelSet<D>::find_surface() {
     find_near();
     find_inside();
     refresh(inside_, frame_.periodic(D - 1), wide() + 1);
-    const AllPlanes all;
-    for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t at) {
+    for_each_line(replicated<D>(frame_.cells), [&](const Index<D>& first, std::size_t at) {
         if (is_near(first[D - 1])) mark_changes_of_sign(first, at);
     });
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
@@ -83,8 +82,8 @@ void LevelSet<D>::collect_surface() {
             I[0] = static_cast<int>(at - mark);
             band_.push_back(I);
         }
-        if (I[D - 1] < detail::own_share.begin) own.begin = band_.size();
-        if (I[D - 1] < detail::own_share.end) own.end = band_.size();
+        if (I[D - 1] < frame_.own().begin) own.begin = band_.size();
+        if (I[D - 1] < frame_.own().end) own.end = band_.size();
     }
     layer_start_[0] = 0;
     layer_start_[1] = band_.size();
@@ -440,7 +439,7 @@ real LevelSet<D>::sum_over_band(int layers, F&& f) const {
     const auto add = [&](real& sum, std::size_t at) {
         if (closed_.empty() || !closed_(band_[at])) sum += open_part(band_[at]) * f(band_[at]);
     };
-    if (is_distributed() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
+    if (frame_.own().distributed() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
     constexpr std::size_t block = BandOfRanks::block;
     const std::size_t end = layer_end(layers);
     return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {
@@ -456,7 +455,7 @@ template <int D>
 real LevelSet<D>::volume() const {
     const int planes = frame_.cells[D - 1];
     const std::size_t plane = phi.size() / static_cast<std::size_t>(planes);
-    const real full = plane_sum(planes, [&](int k) {
+    const real full = plane_sum(frame_.own(), planes, [&](int k) {
         const std::size_t first = static_cast<std::size_t>(k) * plane;
         const std::uint8_t *inside = inside_.data() + first, *layer = layer_.data() + first;
         const std::uint8_t* closed = closed_.empty() ? nullptr : closed_.data() + first;
@@ -488,6 +487,8 @@ template Vec<2> moment_below_plane(real, const Vec<2>&);
 template Vec<3> moment_below_plane(real, const Vec<3>&);
 template real fraction_of_halves(real, const std::array<Vec<2>, 2>&);
 template real fraction_of_halves(real, const std::array<Vec<3>, 2>&);
+template real LevelSet<2>::width_at(const Index<2>&) const;
+template real LevelSet<3>::width_at(const Index<3>&) const;
 template void LevelSet<2>::find_near();
 template void LevelSet<3>::find_near();
 template void LevelSet<2>::collect_surface();

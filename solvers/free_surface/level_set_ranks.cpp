@@ -66,7 +66,7 @@ void SkinOfRanks<D>::find_beside(const Frame<D>& frame, const std::vector<Index<
 /// Mean of the neighbours further out, in the order of the skin.
 template <int D>
 void SkinOfRanks<D>::continue_into(Grid<real, D>& phi, const std::vector<Index<D>>& skin) {
-    const Partition& cut = *detail::own_share.cut;
+    const Partition& cut = phi.own().partition();
     const auto plane = static_cast<std::size_t>(phi.stride(D - 1));
     std::vector<std::size_t> begins;
     for (int r = 0; r <= cut.ranks(); ++r) {

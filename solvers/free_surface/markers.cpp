@@ -90,7 +90,7 @@ void Markers<D>::sort(const Frame<D>& frame) {
     scratch_.resize(static_cast<std::size_t>(n));
     const int planes = frame.cells[D - 1];
     plane_ = cells / static_cast<std::size_t>(planes);
-    cell_start_.resize(2, plane_, planes + 1, 0);
+    cell_start_.resize(frame.own().slab, 2, plane_, planes + 1, 0);
     cell_start_.fill(0);
     int* start = cell_start_.data();
     for_each_block(n, [&](int first, int last) { find_cells(frame, first, last); });
@@ -152,7 +152,7 @@ void Markers<D>::find_rows(const Frame<D>& frame) {
     const std::size_t rows_in_plane = plane_ / n;
     parallel_for(0, static_cast<int>(rows_.size()), [&](int row) {
         const int *const first = cell_start_.data() + static_cast<std::size_t>(row) * n, *const last = first + n;
-        Extent& extent = rows_[static_cast<std::size_t>(row)] = {frame.cells[0], 0};
+        Segment& extent = rows_[static_cast<std::size_t>(row)] = {frame.cells[0], 0};
         const std::size_t plane = static_cast<std::size_t>(row) / rows_in_plane;
         if (plane_start_[plane] == plane_start_[plane + 1]) return;
         if (*first == *last) return;
@@ -162,29 +162,30 @@ void Markers<D>::find_rows(const Frame<D>& frame) {
 }
 
 template <int D>
-bool Markers<D>::holds(const Frame<D>& frame, const Partition& cut, int rank, int plane) const {
+bool Markers<D>::holds(const Frame<D>& frame, int rank, int plane) {
+    const Partition& cut = frame.own().partition();
     const int n = frame.cells[D - 1], lo = cut.begin(rank) - 1, hi = cut.end(rank, n) + 1;
     if (plane >= lo && plane < hi) return true;
     return frame.periodic(D - 1) && (plane - n >= lo || plane + n < hi);
 }
 
 template <int D>
-void Markers<D>::keep_held(const Frame<D>& frame, const Partition& cut) {
-    if (cut.empty()) return;
-    retain([&](std::size_t p) { return holds(frame, cut, communicator().rank(), frame.cell_of(position(p))[D - 1]); });
+void Markers<D>::keep_held(const Frame<D>& frame) {
+    if (!frame.own().distributed()) return;
+    retain([&](std::size_t p) { return holds(frame, frame.cell_of(position(p))[D - 1]); });
     trim();
     sort(frame);
 }
 
 /// Returns the ranks that store the markers of each plane of cells.
 template <int D>
-void Markers<D>::find_holders(const Frame<D>& frame, const Partition& cut) {
+void Markers<D>::find_holders(const Frame<D>& frame) {
     const int planes = frame.cells[D - 1];
     if (!holders_.empty()) return;
     holders_.resize(static_cast<std::size_t>(planes));
     for (int plane = 0; plane < planes; ++plane)
-        for (int rank = 0; rank < cut.ranks(); ++rank)
-            if (holds(frame, cut, rank, plane)) holders_[static_cast<std::size_t>(plane)].push_back(rank);
+        for (int rank = 0; rank < frame.own().partition().ranks(); ++rank)
+            if (holds(frame, rank, plane)) holders_[static_cast<std::size_t>(plane)].push_back(rank);
 }
 
 /// Finds the destination ranks of this rank's own markers (going_) and those that leave this rank (gone_). Returns how many have left the
@@ -221,10 +222,10 @@ std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, st
 
 /// The same for markers [first, last). Returns how many have left the domain.
 template <int D>
-std::int64_t Markers<D>::exchange(const Frame<D>& frame, const Partition& cut, std::size_t first, std::size_t last, bool leave) {
+std::int64_t Markers<D>::exchange(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave) {
     const auto ranks = static_cast<std::size_t>(communicator().ranks()), self = static_cast<std::size_t>(communicator().rank());
     going_.resize(ranks), sent_.resize(ranks), received_.resize(ranks);
-    find_holders(frame, cut);
+    find_holders(frame);
     const std::int64_t left = find_going(frame, first, last, leave);
     // number of markers sent between each pair of ranks: one row of the table per rank
     table_.resize(ranks * ranks), table_rows_.resize(ranks + 1);
@@ -272,14 +273,14 @@ std::int64_t Markers<D>::exchange(const Frame<D>& frame, const Partition& cut, s
 }
 
 template <int D>
-std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, const Partition& cut, bool leave) {
+std::array<std::int64_t, 2> Markers<D>::migrate(const Frame<D>& frame, bool leave) {
     const auto [first, last] = own(frame);
-    return {static_cast<std::int64_t>(last - first), exchange(frame, cut, first, last, leave)};
+    return {static_cast<std::int64_t>(last - first), exchange(frame, first, last, leave)};
 }
 
 template <int D>
-void Markers<D>::deal(const Frame<D>& frame, const Partition& cut) {
-    exchange(frame, cut, 0, count(), false);
+void Markers<D>::deal(const Frame<D>& frame) {
+    exchange(frame, 0, count(), false);
     sent_.clear(), received_.clear();  // few markers migrate per step
     trim();
     sort(frame);
@@ -326,7 +327,7 @@ void Markers<D>::reserve(std::size_t capacity) {
 
 template <int D>
 std::size_t Markers<D>::bytes() const {
-    std::size_t total = (cell_.capacity() + from_.capacity()) * sizeof(int) + cell_start_.bytes() + rows_.capacity() * sizeof(Extent) +
+    std::size_t total = (cell_.capacity() + from_.capacity()) * sizeof(int) + cell_start_.bytes() + rows_.capacity() * sizeof(Segment) +
                         plane_start_.capacity() * sizeof(std::size_t) + scratch_.capacity() * sizeof(real);
     for_each_array([&](const std::vector<real>& array) { total += array.capacity() * sizeof(real); });
     for (const auto& list : going_) total += list.capacity() * sizeof(int);

@@ -50,20 +50,26 @@ public:
 
     /// In parallel each rank stores the markers of its own planes of cells and ghost markers of one plane on each side, which contribute to
     /// the same faces.
-    bool holds(const Frame<D>& frame, const Partition& cut, int rank, int plane) const;
+    static bool holds(const Frame<D>& frame, int rank, int plane);
+    /// The same for this rank; in one process true.
+    static bool holds(const Frame<D>& frame, int plane) { return !frame.own().distributed() || holds(frame, frame.own().slab->rank(), plane); }
     /// Keeps, of all markers, those that this rank stores.
-    void keep_held(const Frame<D>& frame, const Partition& cut);
+    void keep_held(const Frame<D>& frame);
     /// Migration after motion: every rank receives the markers that it stores now. Each rank sends its own in their order and receives in
     /// rank order, so that the stable sort gives the order of one process. Markers beyond the domain are removed if `leave`. Returns the
     /// number of this rank's own markers before, and of those that left.
-    std::array<std::int64_t, 2> migrate(const Frame<D>& frame, const Partition& cut, bool leave);
+    std::array<std::int64_t, 2> migrate(const Frame<D>& frame, bool leave);
     /// The same for an arbitrary distribution of all markers over the ranks, in rank order: parts of a file. Sorts.
-    void deal(const Frame<D>& frame, const Partition& cut);
+    void deal(const Frame<D>& frame);
     /// Gathers the markers of all ranks in `all`, in the sorted order of one process.
     void gather(const Frame<D>& frame, Markers& all) const;
     /// The markers of this rank's own planes: [first, second). Sorted.
     std::pair<std::size_t, std::size_t> own(const Frame<D>& frame) const {
-        const int lo = detail::own_share.lower(0), hi = detail::own_share.upper(frame.cells[D - 1]);
+        return within(frame.own(), frame);
+    }
+    /// The markers of these planes.
+    std::pair<std::size_t, std::size_t> within(const OwnPlanes& planes, const Frame<D>& frame) const {
+        const int lo = planes.lower(0), hi = planes.upper(frame.cells[D - 1]);
         return {plane_start_[static_cast<std::size_t>(lo)], plane_start_[static_cast<std::size_t>(hi)]};
     }
 
@@ -75,12 +81,19 @@ public:
     std::size_t cell_with(std::size_t p) const;
     /// f(I, begin, end) for each cell of this rank's own planes that contains markers, after sort(); threaded by equal numbers of markers.
     template <class F>
-    void for_each_occupied_cell(const Frame<D>& frame, F&& f) const;
+    void for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
+        for_each_occupied_cell(frame.own(), frame, f);
+    }
+    /// The same for all stored planes, those of ghost markers included.
+    template <class F>
+    void for_each_held_cell(const Frame<D>& frame, F&& f) const {
+        for_each_occupied_cell(OwnPlanes(), frame, f);
+    }
     /// The same for the cells [from, to) in memory, serially.
     template <class F>
     void for_occupied_cells(const Frame<D>& frame, std::size_t from, std::size_t to, F&& f) const;
     /// The part of a row of cells along x that contains markers; `row`: index of the row.
-    const Extent& in_row(std::size_t row) const { return rows_[row]; }
+    const Segment& in_row(std::size_t row) const { return rows_[row]; }
     int in_cell(std::size_t cell) const { return cell_start_.data()[cell + 1] - cell_start_.data()[cell]; }
 
     /// f(array) for every array with one value per marker.
@@ -96,20 +109,22 @@ public:
     std::size_t bytes() const;
 
 private:
+    template <class F>
+    void for_each_occupied_cell(const OwnPlanes& planes, const Frame<D>& frame, F&& f) const;
     void find_cells(const Frame<D>& frame, int first, int last);
     void find_plane_starts(const Frame<D>& frame);
     std::size_t first_cell_from(std::size_t least) const;
     void find_rows(const Frame<D>& frame);
-    void find_holders(const Frame<D>& frame, const Partition& cut);
+    void find_holders(const Frame<D>& frame);
     std::int64_t find_going(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
-    std::int64_t exchange(const Frame<D>& frame, const Partition& cut, std::size_t first, std::size_t last, bool leave);
+    std::int64_t exchange(const Frame<D>& frame, std::size_t first, std::size_t last, bool leave);
 
     bool carries_velocity_ = false, carries_gradient_ = false;
     std::vector<int> cell_, from_;
     PlaneStore<int> cell_start_;            // with two extra entries at its end; in parallel, of the planes whose markers are stored
     std::vector<std::size_t> plane_start_;  // number of markers before each plane
     std::size_t plane_ = 0;                 // cells per plane
-    std::vector<Extent> rows_;
+    std::vector<Segment> rows_;
     std::vector<real> scratch_;
     // in parallel: ranks that store each plane's markers, markers to send to each rank, markers to remove, message buffers, array by array
     std::vector<std::vector<int>> holders_, going_;
@@ -131,9 +146,9 @@ void Markers<D>::for_each_array(F&& f) {
 
 template <int D>
 template <class F>
-void Markers<D>::for_each_occupied_cell(const Frame<D>& frame, F&& f) const {
+void Markers<D>::for_each_occupied_cell(const OwnPlanes& planes, const Frame<D>& frame, F&& f) const {
     constexpr int blocks = 64;
-    const auto [first, last] = own(frame);
+    const auto [first, last] = within(planes, frame);
     const auto first_cell = [&, begin = first, count = last - first](int block) {
         return first_cell_from(begin + count * static_cast<std::size_t>(block) / blocks);
     };

@@ -72,7 +72,7 @@ real Measure<D>::furthest(int axis) const {
 
 template <int D>
 real Measure<D>::height_at_lower_end(int up) const {
-    Index<D> column = frame_.cells;
+    Extent<D> column = frame_.cells;
     column[up == 0 ? 1 : 0] = 1;
     return max_over(column, [&](const Index<D>& I) { return crossing(I, up); });
 }

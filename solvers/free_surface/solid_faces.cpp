@@ -67,7 +67,7 @@ void FacesInSolids<D>::find(const SolidPlacement<D>& placement, const MacState<D
         for (auto* list : {&faces_[at], &closed_[at]}) list->reserve(2 * faces_[at].size());
         solid_[at].reserve(2 * solid_[at].size());
     }
-    any_ = sum_of_ranks(std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) > 0;
+    any_ = sum_of_ranks(frame.own(), std::any_of(faces_.begin(), faces_.end(), [](const auto& list) { return !list.empty(); })) > 0;
 }
 
 template <int D>
@@ -125,7 +125,7 @@ void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, c
         parallel_for(0, static_cast<int>(solid_[at].size()), [&](int i) {
             SolidFace& face = solid_[at][static_cast<std::size_t>(i)];
             const Index<D>& I = faces_[at][static_cast<std::size_t>(i)];
-            if (!is_own_plane(I[D - 1])) return;
+            if (!frame.own().contains(I[D - 1])) return;
             if (face.no_slip || known[at](I) == 0) {
                 face.value = face.velocity[a];
                 return;
@@ -137,7 +137,7 @@ void FacesInSolids<D>::constrain(MacVelocity<D>& u, const FaceMarks<D>& known, c
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
         for (std::size_t i = 0; i < solid_[at].size(); ++i)
-            if (is_own_plane(faces_[at][i][D - 1])) u[a](faces_[at][i]) = solid_[at][i].value;
+            if (frame.own().contains(faces_[at][i][D - 1])) u[a](faces_[at][i]) = solid_[at][i].value;
     }
 }
 

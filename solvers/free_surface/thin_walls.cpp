@@ -56,7 +56,7 @@ void ThinWalls<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& clos
     if (any_) marks_.fill(0);
     any_ = false;
     // the stencils of this rank's own cells reach walls with both ends within this distance
-    const auto near = distributed ? planes_near(frame.cells[D - 1], reach_ + thickest - 1, ring) : std::vector<char>();
+    const auto near = distributed ? planes_near(frame.own().slab, frame.cells[D - 1], reach_ + thickest - 1, ring) : std::vector<char>();
     const auto is_known = [&](int plane) { return near.empty() || near[static_cast<std::size_t>(plane)] != 0; };
     for (const Index<D>& I : skin) {
         if (!is_known(I[D - 1])) continue;
@@ -78,7 +78,7 @@ void ThinWalls<D>::find(const Frame<D>& frame, const Grid<std::uint8_t, D>& clos
             mark_around(lo, hi);
         }
     if (distributed) refresh(marks_, ring, ghost_planes);
-    any_ = sum_of_ranks(any_) > 0;
+    any_ = sum_of_ranks(frame_.own(), any_) > 0;
 }
 
 /// Follows closed cells from the first one inwards: a thin wall, if an open cell follows after a few.

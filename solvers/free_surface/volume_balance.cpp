@@ -36,9 +36,9 @@ void LiquidVolume<D>::for_each_near_line(F&& f) const {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     for (std::size_t line = 0; line < lines_.size(); ++line) {
         const Index<D> I = frame_.index_of(line * n);
-        if (!is_own_plane(I[D - 1]) && !is_own_plane(frame_.near(I, D - 1, 1)[D - 1]) && !is_own_plane(frame_.near(I, D - 1, -1)[D - 1]))
+        if (!frame_.own().contains(I[D - 1]) && !frame_.own().contains(frame_.near(I, D - 1, 1)[D - 1]) && !frame_.own().contains(frame_.near(I, D - 1, -1)[D - 1]))
             continue;
-        const Extent& wet = lines_[line];
+        const Segment& wet = lines_[line];
         if (!wet.empty()) f(line * n + static_cast<std::size_t>(wet.begin), line * n + static_cast<std::size_t>(wet.end));
     }
 }
@@ -108,9 +108,9 @@ void LiquidVolume<D>::distribute_excess(const Grid<real, D>& phi, const MacState
         for (std::size_t at = 0; at < 2 * D; ++at) {
             if (weight[at] < 0) continue;
             const real share = sum > 0 ? weight[at] / sum : real(1) / ways;
-            if (share > 0 && is_own_plane(to[at][D - 1])) part_(to[at]) += share * rest.part;
+            if (share > 0 && frame_.own().contains(to[at][D - 1])) part_(to[at]) += share * rest.part;
         }
-        if (is_own_plane(I[D - 1])) part_(I) -= rest.part;
+        if (frame_.own().contains(I[D - 1])) part_(I) -= rest.part;
     }
 }
 
@@ -133,7 +133,7 @@ void LiquidVolume<D>::compare(const LevelSet<D>& surface, const MacState<D>& sta
     const auto& band = surface.band();
     parallel_for(0, static_cast<int>(band.size()), [&](int i) {
         const Index<D>& I = band[static_cast<std::size_t>(i)];
-        if (!is_own_plane(I[D - 1])) return;
+        if (!frame_.own().contains(I[D - 1])) return;
         missing_(I) = 0, near_(I) = 0, full_(I) = 0;
         const real distance = std::abs(surface.phi(I));
         if (distance > 2 * h || state.cells(I) == poisson::Cell::solid || (!exempt.empty() && exempt(I))) return;
@@ -187,7 +187,7 @@ void LiquidVolume<D>::correct(LevelSet<D>& surface, const MacState<D>& state, co
     const auto for_each_in_band = [&](auto&& f) {
         parallel_for(0, static_cast<int>(band.size()), [&](int i) {
             const Index<D>& I = band[static_cast<std::size_t>(i)];
-            if (is_own_plane(I[D - 1])) f(I);
+            if (frame_.own().contains(I[D - 1])) f(I);
         });
     };
     for_each_in_band([&](const Index<D>& I) {
@@ -226,7 +226,7 @@ void LiquidVolume<D>::join_drop(Grid<real, D>& phi, const Index<D>& I) {
             by[d] = frame_.h[d] * (rest % 3 - 1);
             inside = inside && (rest % 3 == 1 || frame_.step(J, d, rest % 3 - 1));
         }
-        if (inside && is_own_plane(J[D - 1])) phi(J) = std::min(phi(J), here + norm(by));
+        if (inside && frame_.own().contains(J[D - 1])) phi(J) = std::min(phi(J), here + norm(by));
     }
 }
 

@@ -10,8 +10,8 @@ namespace {
 /// spread everywhere.
 constexpr real dust = 1e-6;
 
-/// Extent of entries above dust in a part of n; {n, 0} where there are none.
-Extent extent_of_liquid(const real* F, Extent extent, int n) {
+/// The entries above dust in a part of n; {n, 0} where there are none.
+Segment extent_of_liquid(const real* F, Segment extent, int n) {
     constexpr int block = 8;
     const auto is_empty = [&](int first) {
         real most = 0;
@@ -65,7 +65,7 @@ real LiquidVolume<D>::capacity(std::size_t cell) const {
 template <int D>
 void LiquidVolume<D>::follow(const LevelSet<D>& surface, const MacState<D>& state, real shift) {
     for (const Index<D>& I : surface.band())
-        if (is_own_plane(I[D - 1]) && state.cells(I) != poisson::Cell::solid)
+        if (frame_.own().contains(I[D - 1]) && state.cells(I) != poisson::Cell::solid)
             part_(I) += capacity(part_.linear(I)) * (surface.fraction(I) - surface.fraction(I, -shift));
 }
 
@@ -118,7 +118,7 @@ template <int D>
 template <class F>
 void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) const {
     const int planes = frame_.cells[D - 1], lines = static_cast<int>(lines_.size()) / planes;
-    int begin = detail::own_share.lower(0) - below, end = detail::own_share.upper(planes) + above;
+    int begin = frame_.own().lower(0) - below, end = frame_.own().upper(planes) + above;
     if (!ring) begin = std::max(begin, 0), end = std::min(end, planes);
     if (end - begin > planes) begin = 0, end = planes;  // each plane once
     parallel_for(begin, end, [&](int k) {
@@ -132,16 +132,16 @@ void LiquidVolume<D>::for_each_own_line(int below, int above, bool ring, F&& f) 
 template <int D>
 void LiquidVolume<D>::find_reach(bool within) {
     const int n = frame_.cells[0];
-    within = within && !is_distributed();
+    within = within && !frame_.own().distributed();
     const auto wet = [&](std::size_t line) {
         const real* F = part_.data() + line * static_cast<std::size_t>(n);
-        const Extent reach = within ? reach_of_[line] : Extent{0, n};
-        lines_[line] = reach.empty() ? Extent{n, 0} : extent_of_liquid(F, reach, n);
+        const Segment reach = within ? reach_of_[line] : Segment{0, n};
+        lines_[line] = reach.empty() ? Segment{n, 0} : extent_of_liquid(F, reach, n);
     };
     const bool ring = frame_.periodic(D - 1);
     for_each_own_line(2, 2, ring, wet);
     for_each_own_line(1, 1, ring, [&](std::size_t line) {
-        Extent extent = lines_[line];
+        Segment extent = lines_[line];
         const Index<D> I = frame_.index_of(line * static_cast<std::size_t>(n));
         for (int corner = 0; corner < (D == 2 ? 3 : 9); ++corner) {
             Index<D> J = frame_.near(I, D - 1, corner % 3 - 1);
@@ -149,7 +149,7 @@ void LiquidVolume<D>::find_reach(bool within) {
             extent.join(lines_[frame_.linear(J) / static_cast<std::size_t>(n)]);
         }
         const bool wraps = frame_.periodic(0) && !extent.empty() && (extent.begin == 0 || extent.end == n);
-        if (!extent.empty()) extent = wraps ? Extent{0, n} : Extent{std::max(extent.begin - 1, 0), std::min(extent.end + 1, n)};
+        if (!extent.empty()) extent = wraps ? Segment{0, n} : Segment{std::max(extent.begin - 1, 0), std::min(extent.end + 1, n)};
         reach_of_[line] = extent;
     });
 }
@@ -200,7 +200,7 @@ void LiquidVolume<D>::sweep(const MacState<D>& state, const Grid<real, D>& phi, 
     for_each_own_line(0, axis == D - 1 ? 1 : 0, false, [&](std::size_t line) {
         // the faces below a line's cells, and those above the last line's
         const Index<D> I = frame_.index_of(line * n);
-        Extent reach = reach_of_[line];
+        Segment reach = reach_of_[line];
         if (axis > 0 && I[axis] > 0) reach.join(reach_of_[line - static_cast<std::size_t>(part_.stride(axis)) / n]);
         if (reach.empty()) return;
         const std::size_t face = flux.linear(I), cell = line * n, begin = static_cast<std::size_t>(reach.begin);
@@ -234,7 +234,7 @@ void LiquidVolume<D>::add_fluxes(const Sweep& s, const Grid<real, D>& flux) {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     const auto up = flux.stride(s.axis);
     for_each_own_line(0, 0, false, [&](std::size_t line) {
-        const Extent& reach = reach_of_[line];
+        const Segment& reach = reach_of_[line];
         if (reach.empty()) return;
         const std::size_t face = flux.linear(frame_.index_of(line * n));
         const real *f = flux.data() + face, *u = s.u + face, *open = s.open ? s.open + face : nullptr;
@@ -254,7 +254,7 @@ void LiquidVolume<D>::add_fluxes(const Sweep& s, const Grid<real, D>& flux) {
 template <int D>
 real LiquidVolume<D>::through_side(const Grid<real, D>& flux, int axis, int side) const {
     const int n = frame_.cells[axis];
-    return plane_sum(frame_.cells[D - 1], [&](int k) {
+    return plane_sum(frame_.own(), frame_.cells[D - 1], [&](int k) {
         real sum = 0;
         Index<D> lo{}, hi = flux.extent();
         if (axis == D - 1 && k != (side == 0 ? 0 : n - 1)) return sum;
@@ -267,7 +267,7 @@ real LiquidVolume<D>::through_side(const Grid<real, D>& flux, int axis, int side
             for (; I[0] < hi[0]; ++I[0]) {
                 Index<D> cell = I;
                 cell[axis] -= side;
-                const Extent& reach = reach_of_[frame_.linear(cell) / static_cast<std::size_t>(frame_.cells[0])];
+                const Segment& reach = reach_of_[frame_.linear(cell) / static_cast<std::size_t>(frame_.cells[0])];
                 if (cell[0] >= reach.begin && cell[0] < reach.end) sum += std::abs(flux(I));
             }
         }
@@ -318,7 +318,7 @@ void LiquidVolume<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t LiquidVolume<D>::bytes() const {
     std::size_t total = part_.bytes() + open_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() +
-                        rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) + 2 * lines_.capacity() * sizeof(Extent);
+                        rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) + 2 * lines_.capacity() * sizeof(Segment);
     for (std::size_t a = 0; a < D; ++a) total += flux_[a].bytes();
     return total;
 }

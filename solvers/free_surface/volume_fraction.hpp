@@ -26,7 +26,7 @@ public:
     real advect(const MacState<D>& state, const Grid<real, D>& phi, real dt, bool reversed);
     /// Adds volume to a cell of this rank's own planes [cells].
     void add(const Index<D>& I, real cells) {
-        if (is_own_plane(I[D - 1])) part_(I) += cells;
+        if (frame_.own().contains(I[D - 1])) part_(I) += cells;
     }
     /// Adds the volume that a level set gained by a shift outwards, for a source or sink that moves the surface.
     void follow(const LevelSet<D>& surface, const MacState<D>& state, real shift);
@@ -42,7 +42,6 @@ public:
     const Grid<real, D>& part() const { return part_; }
     real volume() const;  // [m^D]
     /// Gathers the planes of all ranks, where each rank stores all planes but computes only its own.
-    void gather_whole() { gather(part_); }
     void save(Checkpoint& to) const;
     static bool is_saved(const Checkpoint& from) { return from.has("surface.liquid_part"); }
     void restore(const Checkpoint& from);
@@ -86,7 +85,7 @@ private:
     Grid<std::uint8_t, D> full_;    // c: F > ½ at the start of the step
     Grid<real, D> missing_, near_;  // F minus the fraction of φ; surface area per cell
     std::array<Grid<real, D>, D> flux_;
-    std::vector<Extent> lines_, reach_of_;  // per line of cells: where F is not 0, and where it may become so
+    std::vector<Segment> lines_, reach_of_;  // per line of cells: where F is not 0, and where it may become so
     struct Rest {
         std::size_t cell;
         real part;

@@ -105,6 +105,13 @@ std::unique_ptr<Solver<D>> make_solver(std::string_view method, const Options& o
 /// In parallel: returns whether "multigrid" distributes the planes of such a grid with this partition, for any cell flags.
 template <int D>
 bool multigrid_shares(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Partition& cut);
+/// The same for an operator's grids: whether solve() of the method works on each rank's own planes. Otherwise A, p and b must be whole.
+template <int D>
+bool shares_planes(const Method& method, const Operator<D>& A) {
+    const OwnPlanes& own = A.cells.own();
+    return method.distributed_levels && own.distributed() &&
+           multigrid_shares<D>(A.cells.extent(), A.periodic, A.axis_weight, own.partition());
+}
 
 /// r = b − A p in double precision on fluid cells, zero elsewhere; b is used without removing its mean.
 template <int D>

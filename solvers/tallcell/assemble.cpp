@@ -26,7 +26,7 @@ constexpr int towards_lower_line = 2;
 template <int D>
 void TallPressure<D>::assemble(const Grid<real, D>& phi, const MacState<D>& state) {
     find_shared_rows();
-    A_.cut = is_distributed() ? *detail::own_share.cut : Partition{};
+    A_.cut = frame_.own().distributed() ? frame_.own().partition() : Partition{};
     A_.resize();
     for_each_column_near(A_, 1, [&](int c) { place_column(c); });
     for_each_column_near(A_, 0, [&](int c) { add_vertical(phi, state, c); });

@@ -93,12 +93,7 @@ using LineStore = PlaneStore<T>;
 template <class T>
 void resize_lines(const ColumnPlaces& places, LineStore<T>& values) {
     const auto line = static_cast<std::size_t>(places.line_stride());
-    if (places.cut.empty()) {
-        const AllPlanes all;
-        return values.resize(line, line, places.n[1], 0);
-    }
-    const OwnPlanes own(places.cut, 1, detail::own_share.kept > 0 ? 1 : 0, places.periodic[1]);
-    values.resize(line, line, places.n[1], 0);
+    values.resize(slab_of(places.cut, 1, places.periodic[1]), line, line, places.n[1], 0);
 }
 template <class T>
 void refill_lines(const ColumnPlaces& places, LineStore<T>& values) {

@@ -5,7 +5,7 @@
 namespace weir::tallcell {
 
 template <int D>
-Layout<D>::Layout(const Index<D>& cells_, int up_, const std::array<bool, D>& periodic_) : up(up_), rows(cells_[up_]), cells(cells_) {
+Layout<D>::Layout(const Extent<D>& cells_, int up_, const std::array<bool, D>& periodic_) : up(up_), rows(cells_[up_]), cells(cells_) {
     std::size_t h = 0;
     for (int a = 0; a < D; ++a) {
         if (a == up) continue;
@@ -17,13 +17,13 @@ Layout<D>::Layout(const Index<D>& cells_, int up_, const std::array<bool, D>& pe
 
 template <int D>
 ColumnRange Layout<D>::own() const {
-    if (!is_distributed()) return {0, columns()};
-    return {detail::own_share.lower(0) * n[0], detail::own_share.upper(n[1]) * n[0]};
+    if (!cells.own.distributed()) return {0, columns()};
+    return {cells.own.lower(0) * n[0], cells.own.upper(n[1]) * n[0]};
 }
 
 template <int D>
 ColumnRange Layout<D>::above() const {
-    if (!is_distributed()) return {};
+    if (!cells.own.distributed()) return {};
     const int end = own().end;
     if (end < columns()) return {end, end + n[0]};
     return periodic[1] ? ColumnRange{0, n[0]} : ColumnRange{};
@@ -31,7 +31,7 @@ ColumnRange Layout<D>::above() const {
 
 template <int D>
 std::vector<char> Layout<D>::near_lines() const {
-    return planes_near(n[1], 1, periodic[1]);
+    return planes_near(cells.own.slab, n[1], 1, periodic[1]);
 }
 
 /// Tops of tall cells lie on multiples of this: smaller motions of the surface change no knot.

@@ -22,13 +22,13 @@ struct ColumnRange {
 template <int D>
 struct Layout {
     int up = 1, rows = 0;
-    Index<D> cells{};
+    Extent<D> cells{};  // with the planes, that is, lines of columns, of this rank
     std::array<int, D - 1> axes{};   // the horizontal ones
     std::array<int, 2> n{1, 1};      // columns along them
     std::array<bool, 2> periodic{};  // of these axes
 
     Layout() = default;
-    Layout(const Index<D>& cells, int up, const std::array<bool, D>& periodic);
+    Layout(const Extent<D>& cells, int up, const std::array<bool, D>& periodic);
 
     int columns() const { return n[0] * n[1]; }
     /// This rank's columns: in parallel the lines in its planes, otherwise all.
@@ -63,7 +63,7 @@ template <int D, class Known, class Count>
 int find_starts(const Layout<D>& layout, Known&& known, Count&& count, PlaneStore<int>& starts) {
     const auto at = [](int i) { return static_cast<std::size_t>(i); };
     const int n = layout.n[0], lines = layout.n[1];
-    starts.resize(0, at(n), lines + 1, 0);
+    starts.resize(layout.cells.own.slab, 0, at(n), lines + 1, 0);
     parallel_for(0, layout.columns(), [&](int c) {
         if (known(c / n)) starts[at(c)] = count(c);
     });

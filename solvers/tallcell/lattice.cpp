@@ -18,9 +18,9 @@ real TallPressure<D>::largest_of_blocks(const ColumnRange& columns, F&& f) const
 }
 
 /// Maximum over the ranks; NaN if any is NaN.
-static real largest_of_ranks(real own) {
-    if (!is_distributed()) return own;
-    const std::vector<real> all = of_ranks(own);
+static real largest_of_ranks(const OwnPlanes& own, real value) {
+    if (!own.distributed()) return value;
+    const std::vector<real> all = of_ranks(value);
     return detail::largest_of(all, static_cast<int>(all.size()));
 }
 
@@ -267,7 +267,7 @@ void TallPressure<D>::spread(MacState<D>& state, real dt) {
     for (int h = 0; h < D - 1; ++h) fastest_run_ = std::max(fastest_run_, spread_along(h, layout_.own()));
     fastest_run_ = std::max(fastest_run_, spread_along(D - 2, layout_.above()));
     const real vertical = largest_of_blocks([&](const Block& block) { return rebuild(state, block); });
-    fastest_run_ = largest_of_ranks(std::isnan(vertical) ? vertical : std::max(fastest_run_, vertical));
+    fastest_run_ = largest_of_ranks(frame_.own(), std::isnan(vertical) ? vertical : std::max(fastest_run_, vertical));
     fastest_run_below_ = floor_;
     const real scale = state.rho / dt;
     largest_of_blocks([&](const Block& block) {
@@ -416,7 +416,7 @@ real TallPressure<D>::max_divergence(const MacState<D>& state) const {
         if (sides.side_by_side) inflow_above_elements(state, block, sides, [&](int, real inflow) { see(inflow); });
         return largest;
     });
-    return largest_of_ranks(own);
+    return largest_of_ranks(frame_.own(), own);
 }
 
 /// The cells of a column that are knots, below row `end`.

@@ -42,9 +42,8 @@ void TallPressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::ui
 template <int D>
 void TallPressure<D>::find_liquid(const Grid<real, D>& phi, const Grid<std::uint8_t, D>& closed, MacState<D>& state) const {
     const real thin = -thinnest * frame_.h_min();
-    const std::vector<char> near = planes_near(frame_.cells[D - 1], 1, frame_.periodic(D - 1));
-    const AllPlanes all;
-    for_each_line(frame_.cells, [&](const Index<D>& first, std::size_t from) {
+    const std::vector<char> near = planes_near(frame_.own().slab, frame_.cells[D - 1], 1, frame_.periodic(D - 1));
+    for_each_line(replicated<D>(frame_.cells), [&](const Index<D>& first, std::size_t from) {
         if (!near.empty() && near[at(first[D - 1])] == 0) return;
         for (std::size_t i = from; i < from + at(frame_.cells[0]); ++i)
             state.cells[i] = !closed.empty() && closed[i] ? Cell::solid : phi[i] < thin ? Cell::fluid : Cell::air;
@@ -69,7 +68,7 @@ void TallPressure<D>::finish_surface(const Grid<real, D>& phi, const MacState<D>
 /// In parallel, combines over all columns: the shared rows, the row above all elements, and the row below which all faces are in runs.
 template <int D>
 void TallPressure<D>::agree_on_rows() {
-    if (!is_distributed()) return;
+    if (!frame_.own().distributed()) return;
     const std::size_t rows = row_index_.size(), count = rows + 2, ranks = static_cast<std::size_t>(communicator().ranks());
     resize_scratch(rows_of_ranks_, count * ranks);
     const auto own = rows_of_ranks_.begin() + static_cast<std::ptrdiff_t>(count * static_cast<std::size_t>(communicator().rank()));
@@ -288,7 +287,7 @@ void TallPressure<D>::write_heights(Grid<real, D>& to) const {
 template <int D>
 std::int64_t TallPressure<D>::unknowns() const {
     const ColumnRange own = layout_.own();
-    return sum_of_ranks(knots_.start[at(own.end)] - knots_.start[at(own.begin)]);
+    return sum_of_ranks(frame_.own(), knots_.start[at(own.end)] - knots_.start[at(own.begin)]);
 }
 
 template <int D>

@@ -55,8 +55,6 @@ public:
     std::size_t run_count(int a) const { return a == layout_.up ? at(knots_.count()) : runs_[layout_.axes[0] == a ? 0 : 1].size(); }
     /// Unknowns of the pressure.
     std::int64_t unknowns() const;
-    /// Returns whether this rank has found all columns; in parallel false after the start of a step.
-    bool has_all() const { return A_.cut.empty(); }
     /// Solves for the pressure and makes the unknowns divergence-free, except for the volume that moving walls sweep into pockets;
     /// `pockets`: whether there may be any.
     const poisson::Report& project(const Grid<real, D>& phi, MacState<D>& state, real dt, bool pockets = false);

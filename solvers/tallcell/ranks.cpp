@@ -18,8 +18,8 @@ bool holds_own_planes(const scene::Scene&, const Partition& cut) { return !cut.e
 /// move too.
 template <int D>
 void TallCells<D>::refresh_velocity(real dt) {
-    whole_ = held_.cut().empty();
-    if (!is_distributed()) return;
+    whole_ = !own().distributed();
+    if (!own().distributed()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
     const real cells = dt * max_magnitude(state_.u[D - 1]) * frame_.inv_h[D - 1];
@@ -32,28 +32,24 @@ void TallCells<D>::refresh_velocity(real dt) {
 template <int D>
 void TallCells<D>::gather_whole() const {
     if (whole_) return;
-    if (held_.distributed()) return fill_ghosts();
-    const OwnPlanes mine(held_.cut());
+    if (own().distributed_storage()) return fill_ghosts();
     auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
     for (int a = 0; a < D; ++a) gather(state.u[a]);
     gather(state.p);
     gather(const_cast<Grid<real, D>&>(surface_.phi));
-    if (!pressure_.has_all()) {
-        pressure_.write_heights(tall_);
-        gather(tall_);
-    }
+    pressure_.write_heights(tall_);
+    gather(tall_);
     whole_ = true;
 }
 
 /// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
 template <int D>
 void TallCells<D>::fill_ghosts() const {
-    const OwnPlanes mine = held_.own();
     pressure_.write_heights(tall_);
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all{planes_of(state.p), planes_of(tall_)};
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    communicator().refresh(held_.cut(), all, 2, held_.ring());
+    communicator().refresh(own().partition(), all, 2, frame_.periodic(D - 1));
     whole_ = true;
 }
 
@@ -67,10 +63,9 @@ static void for_each_kept(const Grid<real, D>& u, int up, int from, int beside, 
     lo[up] = from;
     const int x = lo[0], count = hi[0] - x;
     hi[0] = x + 1;
-    const std::vector<char> near = planes_near(u.extent()[D - 1], beside, ring);
+    const std::vector<char> near = planes_near(u.own().slab, u.extent()[D - 1], beside, ring);
     const int last = hi[D - 1] - 1;  // around a periodic axis faces there are those of plane 0
-    const AllPlanes all;
-    for_each_in(lo, hi, [&](const Index<D>& I) {
+    for_each_in(lo, replicated(hi), [&](const Index<D>& I) {
         if (near.empty() || near[static_cast<std::size_t>(I[D - 1])] || (ring && I[D - 1] == last && near[0] && u.store().holds(last)))
             f(u.linear(I), static_cast<std::size_t>(count));
     });

@@ -9,10 +9,10 @@ namespace weir::tallcell {
 template <int D>
 FieldSet TallCells<D>::fields() const {
     gather_whole();
-    if (pressure_.has_all()) pressure_.write_heights(tall_);
+    if (!own().distributed()) pressure_.write_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
-    if (held_.distributed()) set.cut = &held_.cut();
+    if (own().distributed_storage()) set.cut = &own().partition();
     FieldView velocity{"velocity", "m/s", Where::face, "", {}};
     for (int a = 0; a < D; ++a) velocity.data.push_back(state_.u[a].values());
     set.fields.push_back(std::move(velocity));
@@ -25,7 +25,6 @@ FieldSet TallCells<D>::fields() const {
 template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
     gather_whole();
-    const OwnPlanes mine = held_.own();
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_, &volume_.part())
                                      .integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
@@ -38,14 +37,6 @@ std::vector<Integral> TallCells<D>::integrals() const {
 
 template <int D>
 void TallCells<D>::save(Checkpoint& to) const {
-    gather_whole();
-    const OwnPlanes mine = held_.own();
-    if (!held_.distributed()) {  // global values, as in the whole state
-        const_cast<LevelSet<D>&>(surface_).make_layers_whole();
-        const_cast<Leapfrog<D>&>(leapfrog_).gather_whole();
-        const_cast<LiquidVolume<D>&>(volume_).gather_whole();
-        gather(const_cast<MacState<D>&>(state_).cells);
-    }
     state_.save(to);
     surface_.save(to);
     leapfrog_.save(to);
@@ -58,7 +49,6 @@ void TallCells<D>::save(Checkpoint& to) const {
 
 template <int D>
 void TallCells<D>::restore(const Checkpoint& from) {
-    const OwnPlanes mine = held_.looking();
     state_.time = from.get_value<real>("time");
     steps_ = from.get_value<std::int64_t>("tallcell.steps");
     place_solids(state_.time);
@@ -74,7 +64,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     remesh();
     mark_liquid_faces();
-    whole_ = !held_.distributed();
+    whole_ = !own().distributed();
 }
 
 template <int D>

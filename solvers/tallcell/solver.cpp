@@ -10,7 +10,6 @@ namespace weir::tallcell {
 /// known throughout the band of the level set, and divergence-free in the liquid to the tolerance of the pressure.
 template <int D>
 StepReport TallCells<D>::step(real dt) {
-    const OwnPlanes mine = held_.own();
     if (!leapfrog_.started()) find_rate(dt);
     leapfrog_.advance(state_.u, dt);  // u at the middle of the step
     const real kick = leapfrog_.kick(dt, true);
@@ -60,7 +59,6 @@ void TallCells<D>::find_rate(real dt) {
 template <int D>
 void TallCells<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     for_each_held(closed_, Index<D>{}, frame_.cells, [&](const Index<D>& I) { closed_(I) = state_.cells(I) == poisson::Cell::solid; });
     in_solids_.find(solids_, state_, frame_, steps_ == 0);
@@ -207,7 +205,7 @@ real TallCells<D>::max_speed_rate() const {
         lo[up_] = pressure_.fastest_run_below();
         const std::size_t x = static_cast<std::size_t>(lo[0]), count = static_cast<std::size_t>(hi[0]) - x;
         const int lines = hi[D - 1], rows = D == 3 ? hi[1] - lo[1] : 1, first_line = lo[D - 1];
-        const real largest = plane_max(lines, [&](int k) {
+        const real largest = plane_max(own(), lines, [&](int k) {
             if (k < first_line) return 0.0;
             real most = 0, poison = 0;  // x − x is 0, or NaN where x is not finite
             for (int j = 0; j < rows; ++j) {

@@ -11,7 +11,6 @@
 #include "free_surface/start.hpp"
 #include "free_surface/volume_fraction.hpp"
 #include "mac/bodies/solid_faces.hpp"
-#include "parallel/held_planes.hpp"
 #include "scene/solver_kind.hpp"
 #include "tallcell/transport.hpp"
 
@@ -45,7 +44,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.distributed(); }
+    bool holds_own_planes() const override { return own().distributed_storage(); }
     std::vector<Integral> integrals() const override;
     BrushForcing* brush() const override { return brush_forcing_.get(); }
     real time() const override { return state_.time; }
@@ -65,6 +64,8 @@ public:
     const TallPressure<D>& mesh() const { return pressure_; }
 
 private:
+    const OwnPlanes& own() const { return state_.own(); }
+
     // Start (start.cpp)
     void refuse_what_it_cannot(const scene::Scene& scene) const;
     void fill_with_liquid(const scene::Scene& scene);
@@ -91,7 +92,6 @@ private:
     real max_speed_rate() const;
 
     TallOptions options_;
-    HeldPlanes held_;  // empty partition in one process, and for replicated work
     MacState<D> state_;
     Frame<D> frame_;
     SolidPlacement<D> solids_;

@@ -13,9 +13,10 @@ namespace {
 
 /// Depth of the velocity's halo: the motion of a step plus the interpolation stencil.
 template <int D>
-HeldPlanes held_planes(const scene::Scene& scene, real cfl) {
+const Slab* slab_of_columns(const scene::Scene& scene, real cfl) {
     const Partition cut = partition_of_columns(scene, communicator().ranks());
-    return HeldPlanes(cut, holds_own_planes(scene, cut), static_cast<int>(std::ceil(cfl)) + 3, geometry::Sides<D>(scene).periodic(D - 1));
+    const int ghost_planes = static_cast<int>(std::ceil(cfl)) + 3;
+    return slab_of(cut, holds_own_planes(scene, cut) ? ghost_planes : 0, geometry::Sides<D>(scene).periodic(D - 1));
 }
 
 }  // namespace
@@ -23,8 +24,7 @@ HeldPlanes held_planes(const scene::Scene& scene, real cfl) {
 template <int D>
 TallCells<D>::TallCells(const scene::Scene& scene)
     : options_(scene),
-      held_(held_planes<D>(scene, options_.cfl)),
-      state_(scene, FieldPlan{}),
+      state_(scene, FieldPlan{}, slab_of_columns<D>(scene, options_.cfl)),
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
@@ -50,8 +50,7 @@ TallCells<D>::TallCells(const scene::Scene& scene)
     set_initial_velocity(state_, scene);
     set_fixed_faces();
     extend_velocity();
-    held_.made();
-    whole_ = !held_.distributed();
+    whole_ = !own().distributed();
 }
 
 template <int D>

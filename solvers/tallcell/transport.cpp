@@ -443,7 +443,8 @@ void Transport<D>::keep_sides(MacVelocity<D>& to) const {
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1}) {
             if (end == 0 ? a != up_ : a == up_ && open_above_) continue;
-            Index<D> lo{}, hi = to[a].extent();
+            Index<D> lo{};
+            Extent<D> hi = to[a].extent();
             if (a != up_) lo[up_] = kept_from_;
             lo[a] = end * frame_.cells[a], hi[a] = lo[a] + 1;
             for_each_in(lo, hi, [&](const Index<D>& I) { to[a](I) = before_[a](I); });

@@ -12,7 +12,7 @@ using poisson::Cell;
 static real per_open(real weight, real open) { return open > 0 ? weight / open : 0; }
 
 template <int D>
-static Index<D> lines_of(Index<D> cells) {
+static Extent<D> lines_of(Extent<D> cells) {
     cells[0] = 1;
     return cells;
 }
@@ -32,29 +32,25 @@ SurfacePressure<D>::SurfacePressure(const Frame<D>& frame, const MacState<D>& st
         A_.axis_weight[a] = h2_ / (frame.h[a] * frame.h[a]);
         A_.periodic[static_cast<std::size_t>(a)] = frame.periodic(a);
     }
+    shares_planes_ = poisson::shares_planes(poisson::method_named(choice.method), A_);
     nothing_to_do_.converged = true;
 }
 
 template <int D>
 void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed, MacState<D>& state) {
-    const auto find = [&] {
-        find_liquid(surface, closed);
-        refresh_liquid();
-        state.cells = A_.cells;
-        for (int a = 0; a < D; ++a) set_weights(surface, state, a);
-        refresh(A_.weight[D - 1], frame_.periodic(D - 1));  // those above the last cells
-    };
-    if (A_.cells.store().windowed()) return find();
-    const AllPlanes all;
-    find();
+    find_liquid(surface, closed);
+    refresh_liquid();
+    state.cells = A_.cells;
+    for (int a = 0; a < D; ++a) set_weights(surface, state, a);
+    refresh(A_.weight[D - 1], frame_.periodic(D - 1));  // those above the last cells
 }
 
 /// In parallel, exchanges the flags of liquid cells at the subdomain boundaries.
 template <int D>
 void SurfacePressure<D>::refresh_liquid() {
-    if (!is_distributed()) return;
+    if (!frame_.own().distributed()) return;
     const std::array<Planes, 2> both{planes_of(A_.cells), planes_of(liquid_)};
-    communicator().refresh(*detail::own_share.cut, both, 2, frame_.periodic(D - 1));
+    communicator().refresh(frame_.own().partition(), both, 2, frame_.periodic(D - 1));
 }
 
 /// Sets the cell flags and the extent of liquid on each line; all loops below are limited to that extent.
@@ -74,14 +70,14 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
         }
         for (int i = first; i < n; ++i) cell[i] = phi[i] < thin ? Cell::fluid : Cell::air;
         for (int i = 0; !closed.empty() && i < n; ++i) cell[i] = closed[at + static_cast<std::size_t>(i)] ? Cell::solid : cell[i];
-        Extent extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
+        Segment extent{static_cast<int>(std::find(cell, cell + n, Cell::fluid) - cell), n};
         while (extent.end > 0 && cell[extent.end - 1] != Cell::fluid) --extent.end;
         liquid_[at / static_cast<std::size_t>(n)] = extent;
     });
     const int lines = static_cast<int>(liquid_.stride(D - 1)), planes = frame_.cells[D - 1];
-    const int begin = detail::own_share.lower(0), end = detail::own_share.upper(planes);
-    has_liquid_ = sum_of_ranks(std::any_of(liquid_.data() + begin * lines, liquid_.data() + end * lines,
-                                           [](const Extent& extent) { return extent.begin < extent.end; })) > 0;
+    const int begin = frame_.own().lower(0), end = frame_.own().upper(planes);
+    has_liquid_ = sum_of_ranks(frame_.own(), std::any_of(liquid_.data() + begin * lines, liquid_.data() + end * lines,
+                                           [](const Segment& extent) { return extent.begin < extent.end; })) > 0;
 }
 
 /// Face weights: the open fraction between liquid cells, times 1/θ where the surface cuts the line between the centres.
@@ -149,7 +145,7 @@ void SurfacePressure<D>::set_rhs(const MacState<D>& state, const LevelSet<D>& su
                                  const Grid<real, D>* curvature) {
     const real scale = -h2_ * state.rho / dt;
     for_each_line(frame_.cells, [&](Index<D> I, std::size_t at) {
-        const Extent& extent = liquid_[at / static_cast<std::size_t>(frame_.cells[0])];
+        const Segment& extent = liquid_[at / static_cast<std::size_t>(frame_.cells[0])];
         if (extent.begin >= extent.end) return;
         I[0] = extent.begin;
         real* b = b_.data() + at;
@@ -177,7 +173,7 @@ void SurfacePressure<D>::apply_drag(const MacState<D>& state) {
 /// In parallel: distributed where the method supports it, otherwise replicated on each rank.
 template <int D>
 const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
-    if (!is_distributed()) return solver_->solve(state.p, b_);
+    if (!frame_.own().distributed()) return solver_->solve(state.p, b_);
     if (solver_->shares_planes()) {
         const poisson::Report& report = solver_->solve(state.p, b_);
         refresh(state.p, frame_.periodic(D - 1));
@@ -185,7 +181,6 @@ const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
     }
     gather(b_);
     gather(state.p);
-    const AllPlanes all;
     return solver_->solve(state.p, b_);
 }
 
@@ -197,12 +192,11 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         return nothing_to_do_;
     }
     set_rhs(state, surface, dt, sigma, curvature);
-    if (A_.cells.store().windowed()) {
-        solver_->setup(A_);
-    } else {
-        const AllPlanes all;
-        solver_->setup(A_);
+    if (frame_.own().distributed() && !shares_planes_) {
+        gather(A_.cells);
+        for (auto& weight : A_.weight) gather(weight);
     }
+    solver_->setup(A_);
     const poisson::Report& report =  // the last pressure is the initial guess
         bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
     subtract(state, surface, dt, sigma, curvature, state.u.face);
@@ -303,7 +297,7 @@ real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
         }
         return largest;
     };
-    return plane_max(planes, [&](int plane) {
+    return plane_max(frame_.own(), planes, [&](int plane) {
         real largest = 0;
         for (int line = plane * lines; line < (plane + 1) * lines; ++line) largest = larger_or_nan(largest, of_line(line));
         return largest;

@@ -43,7 +43,7 @@ public:
     real max_divergence(const MacState<D>& state) const;
     /// The part of a line of faces along a, starting at I, on which at least one adjacent cell is liquid. The line must not lie on a side
     /// across it.
-    Extent faces_of_liquid(int a, const Index<D>& I) const;
+    Segment faces_of_liquid(int a, const Index<D>& I) const;
     /// As for_each_face_run, limited to that part of each run.
     template <class F, class G>
     void for_faces_of_liquid(int a, F&& inner, G&& outer) const;
@@ -67,8 +67,9 @@ private:
     Frame<D> frame_;
     poisson::Operator<D> A_;  // its weights are valid on faces of liquid cells, stale elsewhere
     Grid<real, D> b_;         // likewise
-    Grid<Extent, D> liquid_;  // per line of cells along x
+    Grid<Segment, D> liquid_;  // per line of cells along x
     bool has_liquid_ = false;
+    bool shares_planes_ = false;  // in parallel: ranks share the work of the solve; otherwise each does all of it
     std::unique_ptr<poisson::Solver<D>> solver_;
     poisson::Report nothing_to_do_;
     real tolerance_ = 0;
@@ -77,11 +78,11 @@ private:
 };
 
 template <int D>
-Extent SurfacePressure<D>::faces_of_liquid(int a, const Index<D>& I) const {
+Segment SurfacePressure<D>::faces_of_liquid(int a, const Index<D>& I) const {
     Index<D> row = I;
     row[0] = 0;
     const std::size_t above = A_.cells.linear(row) / static_cast<std::size_t>(frame_.cells[0]);
-    Extent extent = liquid_[above];
+    Segment extent = liquid_[above];
     if (a == 0)
         ++extent.end;
     else
@@ -94,7 +95,7 @@ template <class F, class G>
 void SurfacePressure<D>::for_faces_of_liquid(int a, F&& inner, G&& outer) const {
     const auto n = static_cast<std::size_t>(frame_.cells[0]), stride = static_cast<std::size_t>(A_.cells.stride(a));
     const auto near = [&](std::size_t face, std::size_t cell, int count) {
-        Extent extent = liquid_[cell / n];
+        Segment extent = liquid_[cell / n];
         extent.join(liquid_[(cell - stride) / n]);
         const int first = static_cast<int>(cell % n), shift = a == 0 ? 1 : 0;
         const int begin = std::max(first, extent.begin), end = std::min(first + count, extent.end + shift);

@@ -9,8 +9,8 @@ namespace weir::water {
 /// markers.
 template <int D>
 void Water<D>::refresh_velocity(real dt) {
-    whole_ = held_.cut().empty(), markers_whole_ = false;
-    if (!is_distributed()) return;
+    whole_ = !own().distributed(), markers_whole_ = false;
+    if (!own().distributed()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
     real fastest = max_magnitude(state_.u[D - 1]);
@@ -24,7 +24,7 @@ void Water<D>::refresh_velocity(real dt) {
 /// Extends solids into ghost planes as far as liquid moves, with distributed storage.
 template <int D>
 void Water<D>::fill_solid_ghosts() {
-    if (!held_.distributed() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
+    if (!own().distributed() || !solids_.any() || near_solid_.store().reaches(reach_)) return;
     solids_.fill_ghosts(state_, reach_, [&] {
         for (auto* bytes : {&closed_, &near_solid_}) bytes->store().open(reach_, frame_.periodic(D - 1));
         mark_closed();
@@ -34,25 +34,25 @@ void Water<D>::fill_solid_ghosts() {
 /// Removes markers beyond open sides; in parallel also migrates markers. Returns how many there were, and how many have left.
 template <int D>
 std::array<std::int64_t, 2> Water<D>::migrate_markers() {
-    if (!is_distributed()) {
+    if (!own().distributed()) {
         const std::size_t all = markers_.count(), departed = remove_departed(markers_, frame_, state_.sides);
         return {static_cast<std::int64_t>(all), static_cast<std::int64_t>(departed)};
     }
     bool open = false;
     for (int a = 0; a < D; ++a) open = open || state_.sides.open(a, 0) || state_.sides.open(a, 1);
-    const auto [own, left] = markers_.migrate(frame_, held_.cut(), open);
-    if (!open) return {own, 0};
-    return {sum_of_ranks(own), sum_of_ranks(left)};
+    const auto [mine, left] = markers_.migrate(frame_, open);
+    if (!open) return {mine, 0};
+    return {sum_of_ranks(own(), mine), sum_of_ranks(own(), left)};
 }
 
 /// Checks that one process would make on whole fields after each step.
 template <int D>
 void Water<D>::check_own() const {
     const auto is_finite = [](const Grid<real, D>& q) {
-        const int planes = q.extent()[D - 1], begin = detail::own_share.lower(0), end = detail::own_share.upper(planes);
+        const int planes = q.extent()[D - 1], begin = q.own().lower(0), end = q.own().upper(planes);
         const auto plane = static_cast<std::size_t>(q.stride(D - 1));
         auto& most = detail::reduction_scratch(static_cast<std::size_t>(planes));
-        for_each_plane(0, planes, [&](int k) {
+        for_each_plane(q.extent(), [&](int k) {
             most[static_cast<std::size_t>(k)] = largest_magnitude(q.data() + static_cast<std::size_t>(k) * plane, plane);
         });
         return std::all_of(most.begin() + begin, most.begin() + end, [](real value) { return std::isfinite(value); });
@@ -83,30 +83,27 @@ void Water<D>::check_own() const {
 template <int D>
 void Water<D>::gather_whole() const {
     if (whole_) return;
-    if (held_.distributed()) return fill_ghosts();
-    const OwnPlanes mine(held_.cut());
-    auto& own = const_cast<Water&>(*this);  // only planes of other ranks are written: the state does not change
-    for (int a = 0; a < D; ++a) gather(own.state_.u[a]);
-    gather(own.state_.p);
-    own.surface_.gather_whole();
+    if (own().distributed_storage()) return fill_ghosts();
+    auto& self = const_cast<Water&>(*this);  // only planes of other ranks are written: the state does not change
+    for (int a = 0; a < D; ++a) gather(self.state_.u[a]);
+    gather(self.state_.p);
+    self.surface_.gather_whole();
     whole_ = true;
 }
 
 /// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
 template <int D>
 void Water<D>::fill_ghosts() const {
-    const OwnPlanes mine = held_.own();
     auto& state = const_cast<MacState<D>&>(state_);
     std::vector<Planes> all{planes_of(state.p)};
     for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    communicator().refresh(held_.cut(), all, 2, frame_.periodic(D - 1));
+    communicator().refresh(own().partition(), all, 2, frame_.periodic(D - 1));
     whole_ = true;
 }
 
 template <int D>
 void Water<D>::gather_markers() const {
-    if (held_.cut().empty() || markers_whole_ || held_.distributed()) return;
-    const OwnPlanes mine(held_.cut());
+    if (!own().distributed() || markers_whole_ || own().distributed_storage()) return;
     markers_.gather(frame_, all_markers_);
     markers_whole_ = true;
 }

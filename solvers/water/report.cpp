@@ -14,14 +14,10 @@ FieldSet Water<D>::fields() const {
     gather_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
-    if (held_.distributed()) set.cut = &held_.cut();
-    set.particles_in_parts = held_.distributed();
+    if (own().distributed_storage()) set.cut = &own().partition();
+    set.particles_in_parts = own().distributed_storage();
     const Markers<D>& markers = set.particles_in_parts ? markers_ : all_markers();
-    const auto own_markers = [&] {
-        const OwnPlanes mine = held_.own();
-        return markers_.own(frame_);
-    };
-    const auto [first, last] = set.particles_in_parts ? own_markers() : std::pair{std::size_t{0}, markers.count()};
+    const auto [first, last] = set.particles_in_parts ? markers_.own(frame_) : std::pair{std::size_t{0}, markers.count()};
     FieldView velocity{"velocity", "m/s", Where::face, "", {}}, position{"position", "m", Where::particle, marker_set_name, {}};
     FieldView carried{"velocity", "m/s", Where::particle, marker_set_name, {}};
     for (int a = 0; a < D; ++a) {
@@ -43,10 +39,9 @@ FieldSet Water<D>::fields() const {
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
     gather_whole();
-    const OwnPlanes mine = held_.own();
     const auto [first, last] = markers_.own(frame_);
-    const auto count = static_cast<real>(sum_of_ranks(static_cast<std::int64_t>(last - first)));
-    const std::int64_t escaped = sum_of_ranks(escaped_), reseeded = sum_of_ranks(reseeded_);
+    const auto count = static_cast<real>(sum_of_ranks(own(), static_cast<std::int64_t>(last - first)));
+    const std::int64_t escaped = sum_of_ranks(own(), escaped_), reseeded = sum_of_ranks(own(), reseeded_);
     const Measure<D> measure(frame_, surface_, closed_, keeps_volume_ ? &volume_.part() : nullptr);
     std::vector<Integral> list = measure.integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});
@@ -66,14 +61,7 @@ std::vector<Integral> Water<D>::integrals() const {
 
 template <int D>
 void Water<D>::save(Checkpoint& to) const {
-    gather_whole();
-    const OwnPlanes mine = held_.own();
-    if (!held_.distributed()) {  // global values, as in the whole state
-        const_cast<LevelSet<D>&>(surface_).make_layers_whole();
-        const_cast<Leapfrog<D>&>(leapfrog_).gather_whole();
-        const_cast<LiquidVolume<D>&>(volume_).gather_whole();
-    }
-    const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(escaped_), sum_of_ranks(reseeded_)};
+    const std::array<std::int64_t, 3> counts{steps_, sum_of_ranks(own(), escaped_), sum_of_ranks(own(), reseeded_)};
     state_.save(to);
     if (bodies_) bodies_->save(to);
     surface_.save(to);
@@ -109,15 +97,14 @@ void Water<D>::restore_markers(const Checkpoint& from) {
         if (at == 1) all = held.all;
         if (held.all != all) throw std::runtime_error("checkpoint block \"" + name + "\" is of another number of markers than the first");
     });
-    if (held_.cut().empty())
-        markers_.sort(frame_);
+    if (own().distributed())
+        markers_.deal(frame_);
     else
-        markers_.deal(frame_, held_.cut());
+        markers_.sort(frame_);
 }
 
 template <int D>
 void Water<D>::restore(const Checkpoint& from) {
-    const OwnPlanes mine = held_.looking();
     state_.time = from.get_value<real>("time");
     if (bodies_ || solids_.moving() || state_.time == 0) state_.restore(from);  // where solids are placed again
     if (bodies_) bodies_->restore(from, solids_);
@@ -135,7 +122,7 @@ void Water<D>::restore(const Checkpoint& from) {
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = communicator().rank() == 0 ? counts[1] : 0, reseeded_ = communicator().rank() == 0 ? counts[2] : 0;
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
-    whole_ = !held_.distributed(), markers_whole_ = false;
+    whole_ = !own().distributed(), markers_whole_ = false;
     gather_whole();
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
@@ -150,7 +137,7 @@ std::size_t Water<D>::bytes() const {
                         (viscosity_ ? viscosity_->bytes() + friction_->bytes() + sizeof(*viscosity_) + sizeof(*friction_) : 0) +
                         (heat_ ? heat_->bytes() : 0) + closed_.bytes() + near_solid_.bytes() + not_solved_for_.bytes() +
                         curvature_.bytes() + in_solids_.bytes();
-    if (!held_.cut().empty()) total += all_markers_.bytes();
+    if (own().distributed()) total += all_markers_.bytes();
     if (bodies_) total += bodies_->bytes();
     for (const auto& emitter : emitters_) total += emitter.bytes();
     for (const auto& sum : sums_.sum) total += sum.bytes();

@@ -11,7 +11,6 @@ namespace weir::water {
 /// set, and divergence-free in the liquid to the tolerance of the pressure.
 template <int D>
 StepReport Water<D>::step(real dt) {
-    const OwnPlanes mine = held_.own();
     const real kick = to_middle(dt);
     refresh_velocity(dt);
     move_bodies(dt);
@@ -31,7 +30,7 @@ StepReport Water<D>::step(real dt) {
     leapfrog_.finish(state_.u, kick);
     state_.time += dt;
     ++steps_;
-    if (!held_.cut().empty()) check_own();
+    if (own().distributed()) check_own();
     return {.dt = dt,
             .cfl = dt * rate_,
             .max_divergence = divergence,
@@ -85,7 +84,6 @@ void Water<D>::move_solids(real t) {
 template <int D>
 void Water<D>::place_solids(real t) {
     if (!solids_.any() || (t > 0 && !solids_.moving())) return;
-    const AllPlanes all(!held_.distributed());
     solids_.place(state_, t);
     mark_closed();
     for_each_line(frame_.cells, [&](const Index<D>&, std::size_t at) {
@@ -129,7 +127,6 @@ void Water<D>::correct_surface(real dt) {
     control_volume();
     curvature();
     const auto timed = passes_.time("level set");
-    if (!held_.distributed()) surface_.gather_whole();
     pressure_.set_surface(surface_, not_solved_for(dt), state_);
 }
 
@@ -307,7 +304,8 @@ void Water<D>::set_fixed_faces() {
         auto& known = known_[static_cast<std::size_t>(a)];
         for (const int end : {0, 1}) {
             if (frame_.periodic(a) || state_.sides.open(a, end)) continue;
-            Index<D> lo{}, hi = known.extent();
+            Index<D> lo{};
+            Extent<D> hi = known.extent();
             lo[a] = end == 0 ? 0 : frame_.cells[a];
             hi[a] = lo[a] + 1;
             for_each_in(lo, hi, [&](const Index<D>& I) { known(I) = 1; });
@@ -321,7 +319,7 @@ template <int D>
 void Water<D>::control_volume() {
     if (!options_.volume_control) return;
     const auto timed = passes_.time("effect volume_control");
-    const std::int64_t airborne = sum_of_ranks(static_cast<std::int64_t>(surface_.count_airborne(markers_)));
+    const std::int64_t airborne = sum_of_ranks(own(), static_cast<std::int64_t>(surface_.count_airborne(markers_)));
     const real missing = volume_target_ - surface_.volume() - markers_.volume * static_cast<real>(airborne);
     volume_shift_ += std::abs(surface_.regain(missing));
 }
@@ -335,7 +333,7 @@ void Water<D>::curvature() {
     const auto& band = surface_.band();
     parallel_for(0, static_cast<int>(surface_.layer_end(1)), [&](int i) {
         const Index<D>& I = band[static_cast<std::size_t>(i)];
-        if (is_own_plane(I[D - 1])) curvature_(I) = curvature_near(surface_.phi, frame_, I);
+        if (own().contains(I[D - 1])) curvature_(I) = curvature_near(surface_.phi, frame_, I);
     });
     refresh(curvature_, frame_.periodic(D - 1));
 }
@@ -348,7 +346,7 @@ real Water<D>::max_speed_rate() const {
         const auto& known = known_[static_cast<std::size_t>(a)];
         const auto& u = state_.u[a];
         const Index<D>& n = known.extent();
-        const real largest = plane_max(n[D - 1], [&](int k) {
+        const real largest = plane_max(own(), n[D - 1], [&](int k) {
             real m = 0;
             const auto see = [&](std::size_t at, int count) {
                 const real* value = u.data() + at;
@@ -372,7 +370,7 @@ real Water<D>::max_speed_rate() const {
                     see(row, n[0]);
                     continue;
                 }
-                const Extent extent = pressure_.faces_of_liquid(a, I);
+                const Segment extent = pressure_.faces_of_liquid(a, I);
                 if (!extent.empty()) see(row + static_cast<std::size_t>(extent.begin), extent.end - extent.begin);
                 if (a == 0) see(row, 1), see(row + static_cast<std::size_t>(frame_.cells[0]), 1);
             }

@@ -16,7 +16,6 @@
 #include "mac/bodies/solid_faces.hpp"
 #include "mac/grid/projection.hpp"
 #include "mac/grid/state.hpp"
-#include "parallel/held_planes.hpp"
 #include "scene/solver_kind.hpp"
 #include "water/emitters.hpp"
 #include "water/heat.hpp"
@@ -82,7 +81,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.distributed(); }
+    bool holds_own_planes() const override { return own().distributed_storage(); }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
     BrushForcing* brush() const override { return brush_forcing_.get(); }
@@ -95,7 +94,7 @@ public:
     const Passes& passes() const override { return passes_; }
     Passes& passes() override { return passes_; }
     /// In parallel, each rank checks its own planes.
-    bool checks_itself() const override { return !held_.cut().empty(); }
+    bool checks_itself() const override { return own().distributed(); }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
 
@@ -106,6 +105,8 @@ public:
     const LiquidVolume<D>& volume() const { return volume_; }
 
 private:
+    const OwnPlanes& own() const { return state_.own(); }
+
     // Start (start.cpp)
     void read_emitters(const scene::Scene& scene);
     void refuse_buried_emitters(const scene::Scene& scene) const;
@@ -157,7 +158,7 @@ private:
     void gather_markers() const;
     void fill_solid_ghosts();
     void restore_markers(const Checkpoint& from);
-    const Markers<D>& all_markers() const { return held_.cut().empty() ? markers_ : all_markers_; }
+    const Markers<D>& all_markers() const { return own().distributed() ? all_markers_ : markers_; }
 
     // Edits between steps (edit.cpp)
     void keep_faces();
@@ -173,7 +174,6 @@ private:
     real max_speed_rate() const;
 
     WaterOptions options_;
-    HeldPlanes held_;
     MacState<D> state_;
     Frame<D> frame_;
     std::unique_ptr<BodiesInFlow<D>> bodies_;  // nullptr where the scene has none

@@ -81,12 +81,12 @@ std::int64_t Water<D>::emit(const Emitter<D>& emitter, real dt) {
                 x[d] = frame_.origin[d] + 0.5 * frame_.h[d] * (static_cast<real>(k[static_cast<std::size_t>(d)]) + jitter) +
                        emitter.velocity[d] * running;
             }
-            if (is_distributed() && !markers_.holds(frame_, held_.cut(), communicator().rank(), frame_.cell_of(x)[D - 1])) continue;
+            if (!Markers<D>::holds(frame_, frame_.cell_of(x)[D - 1])) continue;
             const Vec<D> earlier = x - (to - from) * emitter.velocity;
             const bool now = emitter.shape->contains(x), before = emitter.shape->contains(earlier) && is_free(earlier);
             const bool enters = now && !before, fills = starts && before && !(surface_.phi(frame_.cell_of(earlier)) < 0);
             if ((enters || fills) && is_free(x)) {
-                markers_.add(x, emitter.velocity), emitted += is_own_plane(frame_.cell_of(x)[D - 1]);
+                markers_.add(x, emitter.velocity), emitted += own().contains(frame_.cell_of(x)[D - 1]);
                 volume_.add(frame_.cell_of(x), real(1) / Markers<D>::per_cell);
             }
         }
@@ -110,7 +110,7 @@ void Water<D>::apply_sources_and_sinks(real dt) {
     std::int64_t emitted = 0;
     for (const auto& emitter : emitters_)
         if (emitter.works(state_.time, state_.time + dt)) emits = true, emitted += emit(emitter, dt);
-    if (emits) volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(sum_of_ranks(emitted));
+    if (emits) volume_target_ += frame_.cell_volume() / Markers<D>::per_cell * static_cast<real>(sum_of_ranks(own(), emitted));
     markers_.sort(frame_);
     if (brush_forcing_) apply_brush_sources();
 }
@@ -172,7 +172,7 @@ void Water<D>::impose_emitters(real dt, real Emitter<D>::Face::*speed) {
             auto& known = known_[static_cast<std::size_t>(a)];
             const auto plane = static_cast<std::size_t>(known.stride(D - 1));
             for (const auto& face : emitter.faces[static_cast<std::size_t>(a)]) {
-                if (!is_own_plane(static_cast<int>(face.at / plane))) continue;
+                if (!own().contains(static_cast<int>(face.at / plane))) continue;
                 state_.u[a][face.at] = face.*speed;
                 known[face.at] = 1;
             }
@@ -187,7 +187,7 @@ void Water<D>::carry_emitters_velocity(real dt) {
     for (const auto& emitter : emitters_) {
         if (!emitter.works(state_.time, state_.time + dt)) continue;
         for (const std::size_t cell : emitter.cells) {
-            if (!is_own_plane(frame_.index_of(cell)[D - 1])) continue;
+            if (!own().contains(frame_.index_of(cell)[D - 1])) continue;
             for (std::size_t p = markers_.begin(cell); p < markers_.end(cell); ++p)
                 if (emitter.shape->contains(markers_.position(p)))
                     for (int a = 0; a < D; ++a) markers_.v[static_cast<std::size_t>(a)][p] = emitter.velocity[a];
@@ -222,8 +222,7 @@ void Water<D>::redistribute_markers() {
     const auto row = static_cast<std::size_t>(frame_.cells[0]);
     const std::size_t cells = product(frame_.cells);
     for (std::size_t cell = 0; cell < cells; ++cell) {
-        if (is_distributed() && cell % row == 0 &&
-            !markers_.holds(frame_, held_.cut(), communicator().rank(), frame_.index_of(cell)[D - 1])) {
+        if (cell % row == 0 && !Markers<D>::holds(frame_, frame_.index_of(cell)[D - 1])) {
             cell += row - 1;
             continue;
         }
@@ -234,7 +233,7 @@ void Water<D>::redistribute_markers() {
         const Index<D> I = frame_.index_of(cell);
         const std::size_t before = markers_.count();
         changed |= fill_cell(I, few);
-        if (is_own_plane(I[D - 1])) reseeded_ += static_cast<std::int64_t>(markers_.count() - before);
+        if (own().contains(I[D - 1])) reseeded_ += static_cast<std::int64_t>(markers_.count() - before);
     }
     if (changed) markers_.sort(frame_);
     if (!heaps) return;

@@ -23,8 +23,7 @@ bool all_stick(const geometry::Solids<D>& solids) {
 template <int D>
 Water<D>::Water(const scene::Scene& scene)
     : options_(scene),
-      held_(mac::held_planes<D>(scene, static_cast<int>(std::ceil(options_.cfl)) + 3)),
-      state_(scene, FieldPlan{}),
+      state_(scene, FieldPlan{}, mac::slab_of<D>(scene, static_cast<int>(std::ceil(options_.cfl)) + 3)),
       frame_(state_.u, state_.sides),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
@@ -72,8 +71,7 @@ Water<D>::Water(const scene::Scene& scene)
     set_fixed_faces();
     extend_velocity(0);
     seed_markers();
-    held_.made();
-    whole_ = !held_.distributed();
+    whole_ = !own().distributed();
 }
 
 /// The initial pressure for friction: hydrostatic, zero in the highest liquid cell.
@@ -130,8 +128,8 @@ void Water<D>::refuse_buried_emitters(const scene::Scene& scene) const {
     const std::size_t named = scene.has("emitters") ? scene.root().tables("emitters").size() : 0;
     for (std::size_t i = 0; i < named && !closed_.empty(); ++i) {
         const auto& cells = emitters_[i].cells;
-        const auto is_open = [&](std::size_t cell) { return is_own_plane(frame_.index_of(cell)[D - 1]) && closed_[cell] == 0; };
-        if (sum_of_ranks(std::any_of(cells.begin(), cells.end(), is_open)) == 0)
+        const auto is_open = [&](std::size_t cell) { return own().contains(frame_.index_of(cell)[D - 1]) && closed_[cell] == 0; };
+        if (sum_of_ranks(own(), std::any_of(cells.begin(), cells.end(), is_open)) == 0)
             scene.refuse("emitters[" + std::to_string(i) + "]", "the emitter lies inside solids: nothing can leave it");
     }
 }
@@ -159,11 +157,11 @@ template <int D>
 void Water<D>::seed_markers() {
     const std::size_t cells = product(frame_.cells);
     refresh_faces(state_.u, frame_, 3);  // ghost markers of one plane read the faces around them
-    if (!is_distributed())
+    if (!own().distributed())
         markers_.reserve(static_cast<std::size_t>(1.25 * volume_target_ / frame_.cell_volume() * Markers<D>::per_cell) + 64);
     for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index<D> I = frame_.index_of(cell);
-        if (is_distributed() && !markers_.holds(frame_, held_.cut(), communicator().rank(), I[D - 1])) continue;
+        if (!Markers<D>::holds(frame_, I[D - 1])) continue;
         if (surface_.phi(I) > norm(frame_.h)) continue;
         for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
             const Vec<D> x = Markers<D>::jittered(frame_, I, sub, options_.seed);
@@ -173,12 +171,12 @@ void Water<D>::seed_markers() {
     }
     markers_.sort(frame_);
     const auto [first, last] = markers_.own(frame_);
-    const std::int64_t count = sum_of_ranks(static_cast<std::int64_t>(last - first));
+    const std::int64_t count = sum_of_ranks(own(), static_cast<std::int64_t>(last - first));
     if (count > 0)
         markers_.volume = volume_target_ / static_cast<real>(count);
     else
         markers_.volume = frame_.cell_volume() / Markers<D>::per_cell;
-    markers_.keep_held(frame_, held_.cut());
+    markers_.keep_held(frame_);
     markers_whole_ = false;
 }
 

@@ -104,7 +104,7 @@ private:
         lines[0] = 1;
         const auto ranks = static_cast<std::size_t>(tally_.cut().ranks());
         tally_.everywhere(sizeof(std::int64_t), 1, sizeof(std::int64_t) * ranks);  // whether there is liquid
-        tally_.refresh({plane_of<D>(n_, sizeof(poisson::Cell)), plane_of<D>(lines, sizeof(Extent))}, 2);
+        tally_.refresh({plane_of<D>(n_, sizeof(poisson::Cell)), plane_of<D>(lines, sizeof(Segment))}, 2);
         sync();  // weights above the last cells
     }
     /// Velocity and liquid fractions at the subdomain boundaries; then per iteration a direction and two inner products.

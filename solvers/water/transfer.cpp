@@ -178,7 +178,6 @@ void scatter_cell(const Markers<D>& m, const Index<D>& I, std::size_t begin, std
 /// A periodic axis stores its first face twice: both copies get the sum.
 template <int D>
 void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
-    const AllPlanes all;
     for (int a = 0; a < D; ++a) {
         if (!frame.periodic(a)) continue;
         auto& sum = sums.sum[static_cast<std::size_t>(a)];
@@ -197,14 +196,14 @@ void join_periodic(const Frame<D>& frame, FaceSums<D>& sums) {
 
 /// f(index, count) on the part of each line of faces within reach of markers, g(index, count) on the rest.
 template <int D, class F, class G>
-void for_faces_near(const Markers<D>& markers, const Frame<D>& frame, const Index<D>& extent, F&& f, G&& g) {
+void for_faces_near(const Markers<D>& markers, const Frame<D>& frame, const Extent<D>& extent, F&& f, G&& g) {
     const auto row = [&](const Index<D>& I) {
         std::size_t at = 0;
         for (int d = D - 1; d > 0; --d) at = at * static_cast<std::size_t>(frame.cells[d]) + static_cast<std::size_t>(I[d]);
         return markers.in_row(at);
     };
     for_each_line(extent, [&](const Index<D>& I, std::size_t at) {
-        Extent near{frame.cells[0], 0};
+        Segment near{frame.cells[0], 0};
         for (const int j : {-1, 0, 1}) {
             if constexpr (D == 2) {
                 near.join(row(frame.near(I, 1, j)));
@@ -231,9 +230,8 @@ void markers_to_faces(const Markers<D>& markers, const Frame<D>& frame, FaceSums
     const auto nothing = [](std::size_t, std::size_t) {};
     // in parallel: ghost markers also add to ghost faces, whose sums are incomplete and unused
     for (auto& sum : sums.sum) {
-        const AllPlanes all;
         for_faces_near(
-            markers, frame, sum.extent(),
+            markers, frame, replicated<D>(sum.extent()),
             [&](std::size_t at, std::size_t count) { std::fill(sum.data() + at, sum.data() + at + count, FaceSum{}); }, nothing);
     }
     const int planes = frame.cells[D - 1], slabs = (planes + slab_planes - 1) / slab_planes;

@@ -125,7 +125,7 @@ real SurfaceViscosity<D>::diagonal(int a, const Index<D>& I) const {
 /// Reserves memory for all faces of this rank's planes, so that no step allocates.
 template <int D>
 void SurfaceViscosity<D>::reserve_unknowns() {
-    const int planes = frame_.cells[D - 1] + 1, own = detail::own_share.upper(planes) - detail::own_share.lower(0);
+    const int planes = frame_.cells[D - 1] + 1, own = frame_.own().upper(planes) - frame_.own().lower(0);
     std::size_t blocks = 0;
     for (std::size_t a = 0; a < D; ++a) {
         const auto plane = static_cast<std::size_t>(mass_[a].stride(D - 1));
@@ -150,7 +150,7 @@ void SurfaceViscosity<D>::list_unknowns() {
     const int planes = frame_.cells[D - 1] + 1;
     for (int k = 0; k < planes; ++k) {
         first_block_[static_cast<std::size_t>(k)] = blocks_.size();
-        for (int a = 0; a < D && is_own_plane(k); ++a) {
+        for (int a = 0; a < D && frame_.own().contains(k); ++a) {
             const auto at = static_cast<std::size_t>(a);
             const auto& mass = mass_[at];
             if (k >= mass.extent()[D - 1]) continue;
@@ -176,7 +176,7 @@ real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
         for (std::size_t k = block.begin; k < block.end; ++k) part += p[a](unknown_[a][k]) * q[a](unknown_[a][k]);
         block_sum_[static_cast<std::size_t>(i)] = part;
     });
-    return plane_sum(frame_.cells[D - 1] + 1, [&](int k) {
+    return plane_sum(frame_.own(), frame_.cells[D - 1] + 1, [&](int k) {
         const auto first = block_sum_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(k)]);
         const auto last = block_sum_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(k) + 1]);
         return std::accumulate(first, last, real{0});

@@ -44,9 +44,9 @@ void SurfaceViscosity<D>::set_weights(const MacState<D>& state, const LevelSet<D
     refresh(cell_, frame_.periodic(D - 1), 2);
     for (int a = 0; a < D; ++a)
         for (int b = a + 1; b < D; ++b) {
-            const WiderPlanes beside(1);  // the next rank's first edges border on this rank's last faces
             auto& weight = edge_[static_cast<std::size_t>(a + b - 1)];
-            for_each_cell(weight.extent(), [&](const Index<D>& I) { weight(I) = edge_weight(a, b, I, closed); });
+            // the next rank's first edges border on this rank's last faces
+            for_each_cell(weight.extent().wider(1), [&](const Index<D>& I) { weight(I) = edge_weight(a, b, I, closed); });
         }
     for (int a = 0; a < D; ++a) {
         auto& mass = mass_[static_cast<std::size_t>(a)];

@@ -16,7 +16,7 @@ public:
     void setup(const Operator<D>& A) override {
         const Stopwatch watch;
         extent_ = A.cells.extent();
-        problem_.build(A, shared_planes(A));
+        problem_.build(A, weir::poisson::shares_planes(method_named("multigrid"), A) ? A.cells.own() : OwnPlanes());
         algebraic_.reset();
         geometric_fits_ = geometric_.setup(problem_);
         if (!geometric_fits_) set_up_algebraic();
@@ -71,12 +71,6 @@ public:
     bool shares_planes() const override { return problem_.own().distributed(); }
 
 private:
-    /// The planes of this rank where ranks can share the levels; otherwise each solves the whole problem.
-    static OwnPlanes shared_planes(const Operator<D>& A) {
-        const OwnPlanes& own = A.cells.own();
-        const bool shares = own.distributed() && multigrid_shares<D>(A.cells.extent(), A.periodic, A.axis_weight, own.partition());
-        return shares ? own : OwnPlanes();
-    }
     /// In parallel, replicated on each rank.
     const Report& continue_alone(Grid<real, D>& p, const Grid<real, D>& b) {
         if (algebraic_ == nullptr) set_up_algebraic();
