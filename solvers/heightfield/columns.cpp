@@ -38,8 +38,7 @@ void refuse_what_columns_cannot(const scene::Scene& scene, const State& state) {
 }  // namespace
 
 Columns::Columns(const scene::Scene& scene)
-    : held_(held_rows(scene)),
-      state_(scene),
+    : state_(scene),
       surface_(state_.plane.extent()),
       rate_(state_.plane.extent()),
       periodic_x_(state_.sides(0, 0).kind == SideKind::periodic),
@@ -58,7 +57,7 @@ Columns::Columns(const scene::Scene& scene)
     if (wet == 0) scene.refuse("solver", "the scene contains no water", "add liquid or initial.surface");
     const real still =
         sum_of_columns(plane, [&](std::size_t c) { return state_.h[c] > state_.dry ? state_.h[c] + state_.bed[c] : 0.0; }) / wet;
-    for_each_column_near(plane, [&](std::size_t c) {
+    for_each_column(plane, rows_stored(plane), [&](std::size_t c) {
         const bool is_wet = state_.h[c] > state_.dry;
         surface_[c] = state_.h[c] + state_.bed[c];
         state_.h[c] = is_wet ? std::max(0.0, still - state_.bed[c]) : 0;
@@ -78,7 +77,6 @@ Columns::Columns(const scene::Scene& scene)
         damping_ = t->number("rate");
         plans_.push_back({.name = "damping", .pass = effect_pass("damping")});
     }
-    held_.made();
 }
 
 /// k of faces between two wet columns: g times the mean of their still depths, over dx^2.
@@ -86,16 +84,16 @@ void Columns::make_stiffness() {
     const Plane& plane = state_.plane;
     const Field& depth = state_.h;
     const auto pull = [&](real a, real b, real d) { return a > 0 && b > 0 ? state_.g * 0.5 * (a + b) / (d * d) : 0; };
-    const real first = is_distributed() ? of_ranks(communicator().rank() == 0 ? depth[0] : 0)[0] : depth[0];
+    const real first = own().distributed() ? of_ranks(communicator().rank() == 0 ? depth[0] : 0)[0] : depth[0];
     const real uneven = sum_of_columns(plane, [&](std::size_t c) { return std::abs(depth[c] - first) <= 1e-12 * first ? 0.0 : 1.0; });
     k_.uniform = floats_.empty() && uneven == 0;
     k_.along_x = pull(first, first, plane.dx), k_.along_z = plane.dim == 3 ? pull(first, first, plane.dz) : 0;
     real stiffest = 2 * (k_.along_x + k_.along_z);
     if (!k_.uniform) {
         const auto between = [&](std::size_t a, std::size_t b, real d) { return pull(depth[a], depth[b], d); };
-        const int nx = plane.nx, nz = plane.nz, begin = detail::own_share.lower(0), end = detail::own_share.upper(nz);
-        k_.x = Field(Index<2>{{nx + 1, nz}});
-        k_.z = Field(Index<2>{{nx, nz + 1}});
+        const int nx = plane.nx, nz = plane.nz, begin = own().lower(0), end = own().upper(nz);
+        k_.x = Field(Extent<2>({{nx + 1, nz}}, own()));
+        k_.z = Field(Extent<2>({{nx, nz + 1}}, own()));
         for (int r = begin; r < end; ++r)
             for (int f = 0; f <= nx; ++f)
                 if (periodic_x_ || (f > 0 && f < nx))
@@ -105,7 +103,8 @@ void Columns::make_stiffness() {
             for (int i = 0; i < nx; ++i)
                 if (periodic_z_ || (f > 0 && f < nz))
                     k_.z[plane.at(i, f)] = between(plane.at(i, (f - 1 + nz) % nz), plane.at(i, f % nz), plane.dz);
-        const real deepest = plane_max(nz, [&](int r) { return *std::max_element(&depth[plane.at(0, r)], &depth[plane.at(0, r)] + nx); });
+        const real deepest =
+            plane_max(own(), nz, [&](int r) { return *std::max_element(&depth[plane.at(0, r)], &depth[plane.at(0, r)] + nx); });
         const real k = 2 * state_.g * deepest;
         stiffest = k / (plane.dx * plane.dx) + (plane.dim == 3 ? k / (plane.dz * plane.dz) : 0);
     }
@@ -116,8 +115,7 @@ void Columns::make_stiffness() {
 real Columns::advised_dt() const { return cfl_ * std::min(limit_, 1 / floats_.pace(state_.time)); }
 
 StepReport Columns::step(real dt) {
-    const OwnPlanes mine = held_.own();
-    ghosts_filled_ = held_.cut().empty();
+    ghosts_filled_ = !own().distributed();
     refresh(surface_, periodic_z_);
     if (brush_forcing_) {
         const auto timed = passes_.time("effect hand");
@@ -140,7 +138,7 @@ StepReport Columns::step(real dt) {
         const auto timed = passes_.time("effect damping");
         const real left = std::exp(-dt * damping_);
         const auto n = static_cast<std::size_t>(state_.plane.nx);
-        for_each_plane(0, state_.plane.nz, [&](int r) {
+        for_each_plane(own(), 0, state_.plane.nz, [&](int r) {
             for (std::size_t c = static_cast<std::size_t>(r) * n; c < static_cast<std::size_t>(r + 1) * n; ++c) rate_[c] *= left;
         });
         through_ *= left;
@@ -155,7 +153,7 @@ StepReport Columns::step(real dt) {
 void Columns::outflow_at_open_sides(real dt) {
     const Plane& plane = state_.plane;
     const auto slow = [&](int i, int r, real d) -> real {
-        if (!is_own_plane(r)) return 0;
+        if (!plane.own.contains(r)) return 0;
         const std::size_t c = plane.at(i, r);
         const real before = rate_[c];
         rate_[c] = before / (1 + dt * std::sqrt(state_.g * state_.h[c]) / d);
@@ -170,7 +168,7 @@ void Columns::outflow_at_open_sides(real dt) {
         for (std::size_t i = 0; i < taken_[2 + end].size(); ++i)
             taken_[2 + end][i] = slow(static_cast<int>(i), first ? 0 : plane.nz - 1, plane.dz);
     }
-    if (is_distributed()) gather_taken();
+    if (own().distributed()) gather_taken();
     real taken = 0;
     for (const std::size_t side : {0, 2, 1, 3})  // x_min, z_min, x_max, z_max
         for (const real change : taken_[side]) taken += change;
@@ -179,9 +177,9 @@ void Columns::outflow_at_open_sides(real dt) {
 
 /// Gathers each rank's rows along x; the first and last row come from the ranks at the ends.
 void Columns::gather_taken() {
-    const auto ranks = static_cast<std::size_t>(held_.cut().ranks());
+    const auto ranks = static_cast<std::size_t>(own().partition().ranks());
     for (std::size_t end = 0; end < 2; ++end) {
-        if (auto& rows = taken_[end]; !rows.empty()) communicator().gather(held_.cut(), {rows.data(), sizeof(real), state_.plane.nz});
+        if (auto& rows = taken_[end]; !rows.empty()) communicator().gather(own().partition(), {rows.data(), sizeof(real), state_.plane.nz});
         auto& row = taken_[2 + end];
         if (row.empty()) continue;
         std::vector<std::size_t> begins(ranks + 1, end == 0 ? row.size() : 0);
@@ -192,7 +190,7 @@ void Columns::gather_taken() {
 
 void Columns::check() const {
     const Plane& plane = state_.plane;
-    const real least = -plane_max(plane.nz, [&](int r) {
+    const real least = -plane_max(plane.own, plane.nz, [&](int r) {
         if (r == 0 && std::isinf(surface_[0])) return not_applicable;
         real most = -infinity;
         for (int i = 0; i < plane.nx; ++i) {
@@ -210,15 +208,13 @@ void Columns::check() const {
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void Columns::fill_ghosts() const {
+void Columns::refresh_rows() {
     if (ghosts_filled_) return;
-    const OwnPlanes mine = held_.own();
-    auto& own = const_cast<Columns&>(*this);  // only rows of other ranks are written: the state does not change
-    if (held_.distributed()) {
-        const std::array<Planes, 2> all{planes_of(own.surface_), planes_of(own.rate_)};
-        communicator().refresh(held_.cut(), all, 1, periodic_z_);
+    if (own().distributed_storage()) {
+        const std::array<Planes, 2> all{planes_of(surface_), planes_of(rate_)};
+        communicator().refresh(own().partition(), all, 1, periodic_z_);
     } else {
-        for (Field* field : {&own.surface_, &own.rate_}) gather(*field);
+        for (Field* field : {&surface_, &rate_}) gather(*field);
     }
     ghosts_filled_ = true;
 }
@@ -231,9 +227,8 @@ std::string Columns::concern() const {
 }
 
 FieldSet Columns::fields() const {
-    fill_ghosts();
-    const OwnPlanes mine = held_.looking();
-    for_each_column_near(state_.plane, [&](std::size_t c) { depth_[c] = surface_[c] - state_.bed[c]; });
+    const_cast<Columns&>(*this).refresh_rows();  // only rows of other ranks are written: the state does not change
+    for_each_column(state_.plane, rows_stored(state_.plane), [&](std::size_t c) { depth_[c] = surface_[c] - state_.bed[c]; });
     FieldSet set{.grid = state_.plane.view(),
                  .fields = {{"velocity", "m/s", Where::cell, "", {nothing_.values(), rate_.values()}},
                             {"depth", "m", Where::cell, "", {depth_.values()}},
@@ -246,7 +241,7 @@ FieldSet Columns::fields() const {
         set.fields.push_back({"displaced", "m", Where::cell, "", {displaced_.values()}});
         floats_.show(set);
     }
-    if (held_.distributed()) set.cut = &held_.cut();
+    if (own().distributed_storage()) set.cut = &own().partition();
     return set;
 }
 
@@ -255,7 +250,6 @@ real Columns::volume() const {
 }
 
 std::vector<Integral> Columns::integrals() const {
-    const OwnPlanes mine = held_.own();
     const real volume = this->volume();
     if (!floats_.empty()) floats_.displaced(surface_, displaced_);
     // height of the water's top above its level at rest; below objects it is lower than the height equivalent to the pressure
@@ -285,7 +279,6 @@ std::vector<Integral> Columns::integrals() const {
 /// The height of the surface, and its rate as the vertical velocity. Not editable with floats, whose columns include their weight.
 std::vector<EditableField> Columns::editable() {
     if (!floats_.empty()) return {};
-    const OwnPlanes mine = held_.own();
     volume_before_ = volume();
     EditableField velocity{"", "velocity", {nothing_.values(), rate_.values()}}, surface{"", "surface", {surface_.values()}};
     velocity.min[0] = velocity.max[0] = 0;
@@ -295,8 +288,7 @@ std::vector<EditableField> Columns::editable() {
 
 /// Counts raised volume as poured and lowered volume as drained. The still depth does not change.
 void Columns::edited(const EditableField& field) {
-    const OwnPlanes mine = held_.looking();
-    for_each_column_near(state_.plane, [&](std::size_t c) {
+    for_each_column(state_.plane, rows_stored(state_.plane), [&](std::size_t c) {
         if (is_wet(c) ? surface_[c] <= state_.bed[c] : surface_[c] != state_.bed[c] || rate_[c] != 0)
             throw BadInput(fmt::format("\"{}\" at {}: the bed is at {} m, and scheme.model = \"columns\" {}", field.name, c, state_.bed[c],
                                        is_wet(c) ? "does not support drying" : "does not support wetting"));
@@ -305,8 +297,7 @@ void Columns::edited(const EditableField& field) {
 }
 
 void Columns::save(Checkpoint& to) const {
-    if (!held_.distributed()) fill_ghosts();
-    const OwnPlanes mine = held_.looking();
+    if (!own().distributed_storage()) const_cast<Columns&>(*this).refresh_rows();  // as in fields()
     put_planes(to, "surface", surface_);
     put_planes(to, "rate", rate_);
     to.put_value("time", state_.time);
@@ -318,18 +309,15 @@ void Columns::save(Checkpoint& to) const {
 }
 
 void Columns::restore(const Checkpoint& from) {
-    {
-        const OwnPlanes mine = held_.looking();
-        get_planes(from, "surface", surface_);
-        get_planes(from, "rate", rate_);
-    }
+    get_planes(from, "surface", surface_);
+    get_planes(from, "rate", rate_);
     state_.time = from.get_value<real>("time");
     state_.net_inflow = from.get_value<real>("poured");
     through_ = from.get_value<real>("through");
     steps_ = from.get_value<std::int64_t>("steps");
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
-    ghosts_filled_ = !held_.distributed();
+    ghosts_filled_ = !own().distributed_storage();
 }
 
 std::size_t Columns::bytes() const {

@@ -16,7 +16,7 @@ public:
     StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }
     std::string concern() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.distributed(); }
+    bool holds_own_planes() const override { return state_.plane.own.distributed_storage(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
     BrushForcing* brush() const override { return brush_forcing_.get(); }
@@ -34,12 +34,12 @@ private:
     void make_stiffness();
     void outflow_at_open_sides(real dt);
     void gather_taken();
-    void fill_ghosts() const;
+    void refresh_rows();
+    const OwnPlanes& own() const { return state_.plane.own; }
     void check() const;
     real volume() const;
     bool is_wet(std::size_t c) const { return state_.h[c] > 0; }
 
-    HeldPlanes held_;
     State state_;  // h is the still depth
     Field surface_, rate_;
     real volume_before_ = 0;  // before an edit [m^3]
@@ -52,7 +52,7 @@ private:
     mutable Field depth_, displaced_;
     Field nothing_;
     std::array<std::vector<real>, 4> taken_;  // absorbed by open sides, per adjacent column: x_min, x_max, z_min, z_max
-    mutable bool ghosts_filled_ = true;       // whether ghost rows, or all rows, are up to date
+    bool ghosts_filled_ = true;               // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;
     real through_ = 0;  // volume rate through sides [m^3/s]

@@ -14,9 +14,9 @@ namespace {
 using scene::Type;
 
 template <class F>
-void for_each_row(const State& s, F&& f) {
+void for_each_own_row(const State& s, F&& f) {
     const auto n = static_cast<std::size_t>(s.plane.nx);
-    for_each_plane(0, s.plane.nz, [&](int k) { f(static_cast<std::size_t>(k) * n, static_cast<std::size_t>(k + 1) * n); });
+    for_each_plane(s.plane.own, 0, s.plane.nz, [&](int k) { f(static_cast<std::size_t>(k) * n, static_cast<std::size_t>(k + 1) * n); });
 }
 
 /// The component of gravity in the plane: for a sloped bed drawn level.
@@ -24,7 +24,7 @@ class Slope final : public Effect<State> {
 public:
     Stage stage() const override { return Stage::force; }
     void apply(State& s, real dt) override {
-        for_each_row(s, [&](std::size_t begin, std::size_t end) {
+        for_each_own_row(s, [&](std::size_t begin, std::size_t end) {
             for (std::size_t c = begin; c < end; ++c) {
                 s.qx[c] += dt * s.h[c] * s.push[0];
                 if (!s.qz.empty()) s.qz[c] += dt * s.h[c] * s.push[1];
@@ -43,7 +43,7 @@ public:
     void apply(State& s, real dt) override {
         if (coefficient_ == 0) return;
         const real gn2 = s.g * coefficient_ * coefficient_;
-        for_each_row(s, [&](std::size_t begin, std::size_t end) {
+        for_each_own_row(s, [&](std::size_t begin, std::size_t end) {
             for (std::size_t c = begin; c < end; ++c) {
                 const real h = s.h[c], x = s.qx[c], z = s.qz.empty() ? 0 : s.qz[c];
                 if (h <= s.dry) continue;
@@ -68,7 +68,7 @@ public:
     void apply(State& s, real dt) override {
         if (rate_ == 0) return;
         const real left = std::exp(-dt * rate_);
-        for_each_row(s, [&](std::size_t begin, std::size_t end) {
+        for_each_own_row(s, [&](std::size_t begin, std::size_t end) {
             for (std::size_t c = begin; c < end; ++c) {
                 s.qx[c] *= left;
                 if (!s.qz.empty()) s.qz[c] *= left;
@@ -88,7 +88,7 @@ public:
         if (!table.has("over")) return;
         const auto& over = table.numbers("over");
         const bool flat = s.plane.dim == 3;
-        for_each_row_near(s.plane, [&](int k) {
+        for_each_row(rows_stored(s.plane), [&](int k) {
             for (int i = 0; i < s.plane.nx; ++i) {
                 const real x = s.plane.x(i), z = s.plane.z(k);
                 const bool in = flat ? x > over[0] && x < over[2] && z > over[1] && z < over[3] : x > over[0] && x < over[1];
@@ -100,7 +100,7 @@ public:
     void apply(State& s, real dt) override {
         const real seconds = std::min(s.time + dt, end_) - std::max(s.time, start_), depth = rate_ * std::max(0.0, seconds);
         if (depth == 0) return;
-        s.net_inflow += s.plane.area() * depth * plane_sum(s.plane.nz, [&](int k) {
+        s.net_inflow += s.plane.area() * depth * plane_sum(s.plane.own, s.plane.nz, [&](int k) {
                             real sum = 0;
                             for (int i = 0; i < s.plane.nx; ++i) {
                                 const std::size_t c = s.plane.at(i, k);

@@ -6,14 +6,18 @@ namespace weir::heightfield {
 
 bool holds_own_rows(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
-HeldPlanes held_rows(const scene::Scene& scene) {
-    const Partition cut = partition_of_rows(Plane(scene), communicator().ranks());
-    return HeldPlanes(cut, holds_own_rows(scene, cut), rows_beside, Sides(scene)(1, 0).kind == SideKind::periodic);
+Plane Plane::of_rank(const scene::Scene& scene) {
+    Plane plane(scene);
+    if (communicator().builds_serial()) return plane;
+    const Partition rows = partition_of_rows(plane, communicator().ranks());
+    const bool periodic = Sides(scene)(1, 0).kind == SideKind::periodic;
+    plane.own = OwnPlanes(slab_of(rows, holds_own_rows(scene, rows) ? rows_beside : 0, periodic));
+    return plane;
 }
 
 std::vector<PlaneRange> rows_near(const Plane& plane) {
-    if (!is_distributed()) return {{0, plane.nz}};
-    const std::vector<char> near = planes_near(plane.nz, rows_beside, detail::own_share.ring);
+    if (!plane.own.distributed()) return {{0, plane.nz}};
+    const std::vector<char> near = planes_near(plane.own.slab, plane.nz, rows_beside, plane.own.slab->ring());
     std::vector<PlaneRange> runs;
     for (int k = 0; k < plane.nz; ++k) {
         if (near[static_cast<std::size_t>(k)] == 0) continue;
@@ -23,8 +27,13 @@ std::vector<PlaneRange> rows_near(const Plane& plane) {
     return runs;
 }
 
-std::int64_t first_of_ranks(std::int64_t column) {
-    if (!is_distributed()) return column;
+std::vector<PlaneRange> rows_stored(const Plane& plane) {
+    if (!plane.own.distributed_storage()) return {{0, plane.nz}};
+    return rows_near(plane);
+}
+
+std::int64_t first_of_ranks(const Plane& plane, std::int64_t column) {
+    if (!plane.own.distributed()) return column;
     std::int64_t first = -1;
     for (const std::int64_t found : of_ranks(column))
         if (found >= 0 && (first < 0 || found < first)) first = found;

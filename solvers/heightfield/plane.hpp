@@ -1,9 +1,9 @@
 // The columns of a height field: one along y for each cell of the horizontal plane; along x in 2D, on x and z in 3D. In parallel rows along
-// x are distributed: a rank stores its own and ghost rows.
+// x are distributed: the plane carries this rank's rows, and so do all fields and loops over it.
 #pragma once
 #include "core/solver.hpp"
 #include "core/types.hpp"
-#include "parallel/held_planes.hpp"
+#include "parallel/grid.hpp"
 #include "scene/scene.hpp"
 
 #include <algorithm>
@@ -20,6 +20,7 @@ struct Plane {
     int nx = 0, nz = 1;  // columns
     real x0 = 0, z0 = 0, dx = 1, dz = 1;
     real floor = 0, ceiling = 0;  // of the domain along y [m]
+    OwnPlanes own{};              // rows; all of them unless the plane is of_rank
 
     explicit Plane(const scene::Scene& scene) : dim(scene.dim()) {
         const auto n = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size"),
@@ -28,8 +29,10 @@ struct Plane {
         floor = origin[1], ceiling = origin[1] + size[1];
         if (dim == 3) nz = static_cast<int>(n[2]), z0 = origin[2], dz = size[2] / n[2];
     }
+    /// The plane with this rank's rows and their storage.
+    static Plane of_rank(const scene::Scene& scene);
     std::size_t count() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz); }
-    Index<2> extent() const { return {{nx, nz}}; }
+    Extent<2> extent() const { return {{{nx, nz}}, own}; }
     std::size_t at(int i, int k) const { return static_cast<std::size_t>(k) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i); }
     real x(int i) const { return x0 + (i + 0.5) * dx; }
     real z(int k) const { return dim == 3 ? z0 + (k + 0.5) * dz : 0; }
@@ -46,32 +49,35 @@ struct Plane {
 inline constexpr int rows_beside = 2;
 
 /// Partition of the rows; none in 2D: a single row is replicated on every rank.
-inline Partition partition_of_rows(const Plane& plane, int ranks) { return plane.dim == 3 ? equal_partition(plane.nz, ranks) : Partition{}; }
+inline Partition partition_of_rows(const Plane& plane, int ranks) {
+    return plane.dim == 3 ? equal_partition(plane.nz, ranks) : Partition{};
+}
 
 /// In parallel: returns whether rows have distributed storage: not where whole fields are read on all ranks.
 bool holds_own_rows(const scene::Scene& scene, const Partition& cut);
-HeldPlanes held_rows(const scene::Scene& scene);
 
-/// This rank's rows and its ghost rows, as ranges of replicated work. All rows in one process.
+/// This rank's rows and its ghost rows; all in one process.
 std::vector<PlaneRange> rows_near(const Plane& plane);
+/// The rows that this rank stores: those, or all without distributed storage.
+std::vector<PlaneRange> rows_stored(const Plane& plane);
 
 /// f(k) for these rows, threaded.
 template <class F>
-void for_each_row_near(const Plane& plane, F&& f) {
-    for (const PlaneRange& rows : rows_near(plane)) parallel_for(rows.begin, rows.end, f);
+void for_each_row(const std::vector<PlaneRange>& of, F&& f) {
+    for (const PlaneRange& rows : of) parallel_for(rows.begin, rows.end, f);
 }
 
 /// f(c) for their columns, serially.
 template <class F>
-void for_each_column_near(const Plane& plane, F&& f) {
-    for (const PlaneRange& rows : rows_near(plane))
+void for_each_column(const Plane& plane, const std::vector<PlaneRange>& of, F&& f) {
+    for (const PlaneRange& rows : of)
         for (std::size_t c = plane.at(0, rows.begin), end = plane.at(0, rows.end); c < end; ++c) f(c);
 }
 
 /// Integral of f over all columns, added row by row; in parallel over all ranks' rows.
 template <class F>
 real sum_of_columns(const Plane& plane, F&& f) {
-    return plane.area() * plane_sum(plane.nz, [&](int k) {
+    return plane.area() * plane_sum(plane.own, plane.nz, [&](int k) {
                real sum = 0;
                for (int i = 0; i < plane.nx; ++i) sum += f(plane.at(i, k));
                return sum;
@@ -79,6 +85,6 @@ real sum_of_columns(const Plane& plane, F&& f) {
 }
 
 /// The smallest of the ranks' columns, each the first one found there; none: -1.
-std::int64_t first_of_ranks(std::int64_t column);
+std::int64_t first_of_ranks(const Plane& plane, std::int64_t column);
 
 }  // namespace weir::heightfield

@@ -332,9 +332,10 @@ private:
 
 template <Limiter limiter>
 void run_parts(const StageOf& stage, std::vector<std::vector<real>>& scratch, RowReport* reports) {
-    const int nz = stage.state.plane.nz, begin = detail::own_share.lower(0), end = detail::own_share.upper(nz);
+    const Plane& plane = stage.state.plane;
+    const int begin = plane.own.lower(0), end = plane.own.upper(plane.nz);
     const auto own = [&] { return scratch[static_cast<std::size_t>(omp_get_thread_num())].data(); };
-    if (stage.state.plane.dim == 2) {
+    if (plane.dim == 2) {
         Part<limiter, false>(stage, scratch[0].data(), reports).run(0, 1);
         return;
     }

@@ -17,8 +17,7 @@ constexpr real most_cfl = 0.5;
 }  // namespace
 
 ShallowWater::ShallowWater(const scene::Scene& scene)
-    : held_(held_rows(scene)),
-      state_(scene),
+    : state_(scene),
       rows_(state_.plane, limiter_named(scene.text("scheme.limiter"))),
       reports_(static_cast<std::size_t>(state_.plane.nz)),
       h1_(state_.h.extent()),
@@ -36,14 +35,13 @@ ShallowWater::ShallowWater(const scene::Scene& scene)
     else
         raised_.reset();
     measure();
-    held_.made();
 }
 
 /// Recomputes the volume and the rate that limits the step: at the start, and after effects have changed depths or speeds.
 void ShallowWater::measure() {
     const Plane& plane = state_.plane;
     const real rx = 1 / plane.dx, rz = 1 / plane.dz, dry = state_.dry;
-    rate_ = plane_max(plane.nz, [&](int k) {
+    rate_ = plane_max(plane.own, plane.nz, [&](int k) {
         real most = 0;
         for (int i = 0; i < plane.nx; ++i) {
             const std::size_t c = plane.at(i, k);
@@ -58,8 +56,7 @@ void ShallowWater::measure() {
 
 /// Audusse et al. 2004 with Heun's method.
 StepReport ShallowWater::step(real dt) {
-    const OwnPlanes mine = held_.own();
-    ghosts_filled_ = held_.cut().empty();
+    ghosts_filled_ = !own().distributed();
     const real cfl = dt * rate_;
     effects_.apply(Stage::source, state_, dt, passes_);
     if (raised_) raise_bed(state_.time + dt);
@@ -73,43 +70,41 @@ StepReport ShallowWater::step(real dt) {
 
 void ShallowWater::raise_bed(real t) {
     const auto timed = passes_.time("raise bed");
-    raised_->at(t, terrain_, state_.bed);
+    raised_->at(t, terrain_, rows_near(state_.plane), state_.bed);
 }
 
 void ShallowWater::move_water(real dt) {
     const auto timed = passes_.time("move water");
     const Water now{state_.h.data(), state_.qx.data(), state_.qz.data()}, next{h1_.data(), qx1_.data(), qz1_.data()};
-    fill_ghost_rows({&state_.h, &state_.qx, &state_.qz}, rows_beside);
+    refresh_water({&state_.h, &state_.qx, &state_.qz}, rows_beside);
     rows_.stage({.state = state_, .from = now, .to = next, .dt = dt, .second = false}, reports_);
     take_reports(0.5);
-    fill_ghost_rows({&h1_, &qx1_, &qz1_}, rows_beside);
+    refresh_water({&h1_, &qx1_, &qz1_}, rows_beside);
     rows_.stage({.state = state_, .from = next, .to = now, .dt = dt, .second = true}, reports_);
     take_reports(0.5);
 }
 
 /// In parallel, fills the ghost rows: the two reconstructions of a face read two.
-void ShallowWater::fill_ghost_rows(const std::array<Field*, 3>& water, int ghost_planes) const {
-    if (!is_distributed()) return;
+void ShallowWater::refresh_water(const std::array<Field*, 3>& water, int ghost_planes) {
+    if (!own().distributed()) return;
     const std::array<Planes, 3> all{planes_of(*water[0]), planes_of(*water[1]), planes_of(*water[2])};
-    communicator().refresh(held_.cut(), all, ghost_planes, held_.ring());
+    communicator().refresh(own().partition(), all, ghost_planes, own().slab->ring());
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void ShallowWater::fill_ghosts() const {
+void ShallowWater::refresh_rows() {
     if (ghosts_filled_) return;
-    const OwnPlanes mine = held_.own();
-    auto& state = const_cast<State&>(state_);  // only rows of other ranks are written: the state does not change
-    if (held_.distributed()) {
-        fill_ghost_rows({&state.h, &state.qx, &state.qz}, 1);
+    if (own().distributed_storage()) {
+        refresh_water({&state_.h, &state_.qx, &state_.qz}, 1);
     } else {
-        for (Field* field : {&state.h, &state.qx, &state.qz}) gather(*field);
-        if (raised_) gather(state.bed);
+        for (Field* field : {&state_.h, &state_.qx, &state_.qz}) gather(*field);
+        if (raised_) gather(state_.bed);
     }
     ghosts_filled_ = true;
 }
 
 void ShallowWater::take_reports(real weight) {
-    if (is_distributed()) communicator().gather(held_.cut(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
+    if (own().distributed()) communicator().gather(own().partition(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
     volume_ = 0, rate_ = 0;
     for (const RowReport& r : reports_) {
         volume_ += r.volume * state_.plane.dz;
@@ -128,11 +123,10 @@ StepLimit ShallowWater::stable_dt() const {
 }
 
 FieldSet ShallowWater::fields() const {
-    fill_ghosts();
-    const OwnPlanes mine = held_.looking();
-    const WiderPlanes beside(1);
+    const_cast<ShallowWater&>(*this).refresh_rows();  // only rows of other ranks are written: the state does not change
+    const OwnPlanes shown = own().distributed_storage() ? own().wider(1) : OwnPlanes{};
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
-    for_each_plane(0, state_.plane.nz, [&](int k) {
+    for_each_plane(shown, 0, state_.plane.nz, [&](int k) {
         for (int i = 0; i < state_.plane.nx; ++i) {
             const std::size_t c = state_.plane.at(i, k);
             const real over = h[c] > state_.dry ? 1 / h[c] : 0;
@@ -147,12 +141,11 @@ FieldSet ShallowWater::fields() const {
                             {"surface", "m", Where::cell, "", {h1_.values()}},
                             {"bed", "m", Where::cell, "", {state_.bed.values()}}}};
     if (!qz.empty()) set.fields[0].data.push_back(qz1_.values());
-    if (held_.distributed()) set.cut = &held_.cut();
+    if (own().distributed_storage()) set.cut = &own().partition();
     return set;
 }
 
 std::vector<Integral> ShallowWater::integrals() const {
-    const OwnPlanes mine = held_.own();
     const Plane& plane = state_.plane;
     const auto sum = [&](const auto& f) { return sum_of_columns(plane, f); };
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
@@ -186,9 +179,8 @@ std::vector<EditableField> ShallowWater::editable() {
 
 /// Added water is counted as poured; below the dry depth it is set at rest.
 void ShallowWater::edited(const EditableField&) {
-    const OwnPlanes mine = held_.looking();
     const real before = volume_;
-    for_each_column_near(state_.plane, [&](std::size_t c) {
+    for_each_column(state_.plane, rows_stored(state_.plane), [&](std::size_t c) {
         const real wet = state_.h[c] > state_.dry ? state_.h[c] : 0;
         state_.qx[c] = wet * qx1_[c];
         if (!qz1_.empty()) state_.qz[c] = wet * qz1_[c];
@@ -198,8 +190,7 @@ void ShallowWater::edited(const EditableField&) {
 }
 
 void ShallowWater::save(Checkpoint& to) const {
-    if (!held_.distributed()) fill_ghosts();
-    const OwnPlanes mine = held_.looking();
+    if (!own().distributed_storage()) const_cast<ShallowWater&>(*this).refresh_rows();  // as in fields()
     put_planes(to, "depth", state_.h);
     put_planes(to, "discharge_x", state_.qx);
     put_planes(to, "discharge_z", state_.qz);
@@ -213,19 +204,18 @@ void ShallowWater::save(Checkpoint& to) const {
 }
 
 void ShallowWater::restore(const Checkpoint& from) {
-    const OwnPlanes mine = held_.looking();
     get_planes(from, "depth", state_.h);
     get_planes(from, "discharge_x", state_.qx);
     get_planes(from, "discharge_z", state_.qz);
     get_planes(from, "bed", state_.bed);
-    refresh(state_.bed, held_.ring(), rows_beside);
+    if (own().distributed_storage()) refresh(state_.bed, own().slab->ring(), rows_beside);
     state_.time = from.get_value<real>("time");
     state_.net_inflow = from.get_value<real>("poured");
     volume_ = from.get_value<real>("volume");
     rate_ = from.get_value<real>("rate");
     clipped_ = from.get_value<real>("clipped");
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
-    ghosts_filled_ = !held_.distributed();
+    ghosts_filled_ = !own().distributed_storage();
 }
 
 std::size_t ShallowWater::bytes() const {

@@ -14,7 +14,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.distributed(); }
+    bool holds_own_planes() const override { return state_.plane.own.distributed_storage(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
     BrushForcing* brush() const override { return brush_forcing_.get(); }
@@ -33,10 +33,10 @@ private:
     void take_reports(real weight);
     void raise_bed(real t);
     void measure();
-    void fill_ghost_rows(const std::array<Field*, 3>& water, int ghost_planes) const;
-    void fill_ghosts() const;
+    void refresh_water(const std::array<Field*, 3>& water, int ghost_planes);
+    void refresh_rows();
+    const OwnPlanes& own() const { return state_.plane.own; }
 
-    HeldPlanes held_;
     State state_;
     Rows rows_;
     std::vector<RowReport> reports_;
@@ -45,7 +45,7 @@ private:
     std::unique_ptr<RaisedBed> raised_;
     Effects<State> effects_;
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
-    mutable bool ghosts_filled_ = true;            // whether ghost rows, or all rows, are up to date
+    bool ghosts_filled_ = true;                    // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, volume_ = 0, rate_ = 0, clipped_ = 0;
 };

@@ -23,10 +23,10 @@ std::vector<std::string> coordinates(const Plane& plane) {
     return plane.dim == 2 ? std::vector<std::string>{"x"} : std::vector<std::string>{"x", "z"};
 }
 
-/// f(i, k) for every column of this rank's rows and ghost rows, threaded over rows.
+/// f(i, k) for every column of these rows, threaded over rows.
 template <class F>
-void for_each_column(const Plane& plane, F&& f) {
-    for_each_row_near(plane, [&](int k) {
+void for_each_in_rows(const Plane& plane, const std::vector<PlaneRange>& rows, F&& f) {
+    for_each_row(rows, [&](int k) {
         for (int i = 0; i < plane.nx; ++i) f(i, k);
     });
 }
@@ -36,7 +36,7 @@ std::int64_t first_of_rows(const Plane& plane, const std::vector<int>& found) {
     std::int64_t first = -1;
     for (int k = plane.nz - 1; k >= 0; --k)
         if (const int i = found[static_cast<std::size_t>(k)]; i >= 0) first = static_cast<std::int64_t>(plane.at(i, k));
-    return first_of_ranks(first);
+    return first_of_ranks(plane, first);
 }
 
 /// The formula at `path`, evaluated at the centre of each column; rejected where it has no value.
@@ -44,7 +44,7 @@ Field formula_field(const Scene& scene, const std::string& path, const Plane& pl
     const scene::Formula f = scene::formula_at(scene, path, coordinates(plane));
     Field values(plane.extent());
     std::int64_t bad = -1;
-    for (const PlaneRange& rows : rows_near(plane))
+    for (const PlaneRange& rows : rows_stored(plane))
         for (int k = rows.begin; k < rows.end; ++k)  // serial: threads would wait for one another
             for (int i = 0; i < plane.nx; ++i) {
                 const real at[2] = {plane.x(i), plane.z(k)};
@@ -52,7 +52,7 @@ Field formula_field(const Scene& scene, const std::string& path, const Plane& pl
                 values[c] = f(at);
                 if (bad < 0 && !std::isfinite(values[c])) bad = static_cast<std::int64_t>(c);
             }
-    if (bad = first_of_ranks(bad); bad >= 0)
+    if (bad = first_of_ranks(plane, bad); bad >= 0)
         scene.refuse(path, fmt::format("{} has no value at x = {:g}, z = {:g}", path, plane.x(static_cast<int>(bad % plane.nx)),
                                        plane.z(static_cast<int>(bad / plane.nx))));
     return values;
@@ -128,7 +128,7 @@ void pour(const Scene& scene, State& state) {
     const geometry::Pose<D> rest;
     for (std::size_t s = 0; s < shapes.size(); ++s) {
         std::vector<int> bad(static_cast<std::size_t>(plane.nz), -1);
-        for_each_column(plane, [&](int i, int k) {
+        for_each_in_rows(plane, rows_stored(plane), [&](int i, int k) {
             const std::size_t c = plane.at(i, k);
             const real bed = state.bed[c];
             if (!(bed < plane.ceiling)) return;
@@ -151,7 +151,7 @@ void give_velocity(const Scene& scene, State& state) {
     if (!scene.has("initial.velocity")) return;
     const Plane& plane = state.plane;
     const auto set = [&](Field& q, const auto& u) {
-        for_each_column_near(plane, [&](std::size_t c) { q[c] = state.h[c] > state.dry ? state.h[c] * u(c) : 0; });
+        for_each_column(plane, rows_stored(plane), [&](std::size_t c) { q[c] = state.h[c] > state.dry ? state.h[c] * u(c) : 0; });
     };
     if (scene.text("initial.velocity.name") == "formula") {
         const Field u = formula_field(scene, "initial.velocity.x", plane);
@@ -177,7 +177,7 @@ public:
         Field terrain = make_terrain(scene, plane), bed = terrain;
         solids_.set_time(0);
         for (std::size_t s = 0; s < solids_.count(); ++s)
-            if (const std::int64_t c = raise(s, terrain, bed, true); c >= 0)
+            if (const std::int64_t c = raise(s, terrain, rows_stored(plane), bed, true); c >= 0)
                 scene.refuse(
                     fmt::format("solids[{}]", s),
                     fmt::format(
@@ -185,19 +185,19 @@ public:
                         plane_.x(static_cast<int>(c % plane_.nx)), plane_.z(static_cast<int>(c / plane_.nx))),
                     "use floats of scheme.model = \"columns\" for floating and dragged objects");
     }
-    void at(real t, const Field& terrain, Field& bed) override {
+    void at(real t, const Field& terrain, const std::vector<PlaneRange>& rows, Field& bed) override {
         solids_.set_time(t);
-        for_each_column_near(plane_, [&](std::size_t c) { bed[c] = terrain[c]; });
-        for (std::size_t s = 0; s < solids_.count(); ++s) raise(s, terrain, bed, false);
+        for_each_column(plane_, rows, [&](std::size_t c) { bed[c] = terrain[c]; });
+        for (std::size_t s = 0; s < solids_.count(); ++s) raise(s, terrain, rows, bed, false);
     }
     bool moves() const override { return solids_.moving(); }
 
 private:
     /// Four lines per column and axis; returns the index of a column over which the solid hangs, if requested, or -1.
-    std::int64_t raise(std::size_t s, const Field& terrain, Field& bed, bool look_for_gaps) {
+    std::int64_t raise(std::size_t s, const Field& terrain, const std::vector<PlaneRange>& rows, Field& bed, bool look_for_gaps) {
         constexpr int lines = 4;
         std::vector<int> hangs(static_cast<std::size_t>(plane_.nz), -1);
-        for_each_column(plane_, [&](int i, int k) {
+        for_each_in_rows(plane_, rows, [&](int i, int k) {
             const std::size_t c = plane_.at(i, k);
             const real low = std::min(terrain[c], plane_.floor), slack = 2 * (plane_.ceiling - low) / hover_parts;
             real sum = 0;
@@ -227,7 +227,7 @@ Field make_terrain(const Scene& scene, const Plane& plane) {
     if (scene.text("terrain.kind") == "formula") return formula_field(scene, "terrain.height", plane);
     const Raster raster = read_raster(scene, plane);
     Field bed(plane.extent());
-    for_each_column(plane, [&](int i, int k) { bed[plane.at(i, k)] = raster(plane.x(i), plane.z(k)); });
+    for_each_in_rows(plane, rows_stored(plane), [&](int i, int k) { bed[plane.at(i, k)] = raster(plane.x(i), plane.z(k)); });
     return bed;
 }
 
@@ -244,12 +244,13 @@ void start(const Scene& scene, State& state) {
     state.bed = make_terrain(scene, state.plane);
     if (const auto raised = make_raised_bed(scene, state.plane)) {
         const Field terrain = state.bed;
-        raised->at(0, terrain, state.bed);
+        raised->at(0, terrain, rows_stored(state.plane), state.bed);
     }
     if (scene.has("initial.surface")) {
         if (!scene.root().tables("liquid").empty()) scene.refuse("initial.surface", "give either initial.surface or liquid, not both");
         const Field surface = formula_field(scene, "initial.surface", state.plane);
-        for_each_column_near(state.plane, [&](std::size_t c) { state.h[c] = std::max(0.0, surface[c] - state.bed[c]); });
+        for_each_column(state.plane, rows_stored(state.plane),
+                        [&](std::size_t c) { state.h[c] = std::max(0.0, surface[c] - state.bed[c]); });
     } else if (state.plane.dim == 2) {
         pour<2>(scene, state);
     } else {
@@ -258,7 +259,8 @@ void start(const Scene& scene, State& state) {
     give_velocity(scene, state);
 }
 
-State::State(const Scene& scene) : plane(scene), sides(scene), rho(scene.number("fluid.density")), dry(scene.number("scheme.dry_depth")) {
+State::State(const Scene& scene)
+    : plane(Plane::of_rank(scene)), sides(scene), rho(scene.number("fluid.density")), dry(scene.number("scheme.dry_depth")) {
     if (plane.nx < 2 || (plane.dim == 3 && plane.nz < 2))
         scene.refuse("grid.cells", "a height field has at least 2 columns along each axis");
     constexpr real nothing = 1e-9;  // [m/s^2]: no noticeable motion in any run

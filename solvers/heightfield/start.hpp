@@ -8,8 +8,7 @@
 
 namespace weir::heightfield {
 
-/// Height of the bed of each column, without solids. In parallel each rank computes the rows that it stores (rows_near), as all functions
-/// below.
+/// Height of the bed of each column, without solids. In parallel each rank computes the rows that it stores, as all functions below.
 Field make_terrain(const scene::Scene& scene, const Plane& plane);
 /// Fills depth, discharge and bed.
 void start(const scene::Scene& scene, State& state);
@@ -19,8 +18,8 @@ void start(const scene::Scene& scene, State& state);
 class RaisedBed {
 public:
     virtual ~RaisedBed() = default;
-    /// The bed at time t.
-    virtual void at(real t, const Field& terrain, Field& bed) = 0;
+    /// The bed of these rows at time t.
+    virtual void at(real t, const Field& terrain, const std::vector<PlaneRange>& rows, Field& bed) = 0;
     virtual bool moves() const = 0;
 };
 /// nullptr without solids.

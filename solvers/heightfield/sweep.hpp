@@ -30,7 +30,7 @@ private:
     /// This rank's rows (all in one process), in parts of several rows.
     struct OwnRows {
         int begin, end;
-        explicit OwnRows(const Plane& plane) : begin(detail::own_share.lower(0)), end(detail::own_share.upper(plane.nz)) {}
+        explicit OwnRows(const Plane& plane) : begin(plane.own.lower(0)), end(plane.own.upper(plane.nz)) {}
         int parts() const;
         int part_begin(int p) const;
         int part_end(int p) const;

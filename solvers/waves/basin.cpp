@@ -17,7 +17,7 @@ Basin::Basin(const Restoring& by, real level, real depth, const Box& box, Values
       width_(nz_ * box.spacing[2]),
       level_(level),
       depth_(depth),
-      series_(nx_, nz_),
+      series_(nx_, nz_, box.rows()),
       mode_(series_.analyse(heights)),
       omega_(mode_.size(), 0),
       now_(mode_.size()),
@@ -57,7 +57,7 @@ void Basin::fill(const Box& box, Sheet& sheet) {
 
 void Basin::fill_water(const Box& box, real level, std::array<Values, 3>& velocity) {
     const auto nx = static_cast<std::size_t>(box.nx());
-    const PlaneRange layers = own_layers(box);
+    const PlaneRange layers = box.layers();
     for (int j = layers.begin; j < layers.end; ++j) {
         std::array<real*, 3> out{};
         for (std::size_t a = 0; a < 3; ++a)

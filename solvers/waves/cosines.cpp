@@ -28,12 +28,12 @@ struct Cosines::Plans {
     }
 };
 
-Cosines::Cosines(int nx, int nz)
+Cosines::Cosines(int nx, int nz, const OwnPlanes& rows)
     : nx_(nx),
       nz_(nz),
-      in_parts_(parts_columns(nz)),
-      held_(held_columns(nx, nz)),
-      transposition_(nx, nz, held_),
+      in_parts_(rows.distributed_storage()),
+      held_(held_columns(nx, rows)),
+      transposition_(nx, nz, rows),
       plans_(std::make_unique<Plans>(nx, nz)) {}
 Cosines::~Cosines() = default;
 
@@ -50,6 +50,8 @@ std::vector<real> Cosines::analyse(Values& field) {
         if (nz_ > 1) fftw_execute_r2r(plans_->column.forth, column, column);
         for (int n = 0; n < nz_; ++n) amplitudes[at(m, n)] = (m == 0 ? 0.5 : 1) * (nz_ > 1 ? (n == 0 ? 0.5 : 1) : 1) * scale * column[n];
     });
+    if (const OwnPlanes& own = transposition_.columns(); own.distributed() && !in_parts_)
+        communicator().gather(own.partition(), {amplitudes.data(), sizeof(real) * static_cast<std::size_t>(nz_), nx_});
     return amplitudes;
 }
 

@@ -12,7 +12,8 @@ class Cosines {
 public:
     enum class SinesAlong { none, x, z };  // instead of the cosines along this axis
 
-    Cosines(int nx, int nz);
+    /// `rows`: this rank's, of the field.
+    Cosines(int nx, int nz, const OwnPlanes& rows);
     ~Cosines();
     Cosines(const Cosines&) = delete;
     Cosines& operator=(const Cosines&) = delete;
@@ -25,7 +26,7 @@ public:
         return static_cast<std::size_t>(m - held_.begin) * static_cast<std::size_t>(nz_) + static_cast<std::size_t>(n);
     }
 
-    /// The amplitudes of a field on the sheet, which is overwritten: of the stored modes.
+    /// The amplitudes of a field on the sheet, which is overwritten: of the stored modes. Collective.
     std::vector<real> analyse(Values& field);
     /// amplitude(m, n) of every mode except the constant one, which is 0; row k of the field is written to out + k stride, for own rows.
     template <class F>

@@ -32,17 +32,16 @@ struct Synthesis::Plans {
     }
 };
 
-HalfPlane Synthesis::held_plane(int nx, int nz) {
+HalfPlane Synthesis::held_plane(int nx, int nz, const OwnPlanes& rows) {
     HalfPlane plane{nx, nz};
-    plane.held = held_columns(plane.columns(), nz);
+    plane.held = held_columns(plane.columns(), rows);
     return plane;
 }
 
-Synthesis::Synthesis(const HalfPlane& plane)
+Synthesis::Synthesis(const HalfPlane& plane, const OwnPlanes& rows)
     : plane_(plane),
-      transposition_(plane.columns(), plane.nz, plane.held),
-      plans_(std::make_unique<Plans>(plane, plane.whole() ? PlaneRange{0, plane.nz} : transposition_.own_rows(),
-                                     transposition_.column(plane.held.begin))) {}
+      transposition_(plane.columns(), plane.nz, rows),
+      plans_(std::make_unique<Plans>(plane, transposition_.own_rows(), transposition_.column(plane.held.begin))) {}
 Synthesis::~Synthesis() = default;
 
 void Synthesis::transform_column(int m) {

@@ -27,8 +27,8 @@ struct HalfPlane {
 class Synthesis {
 public:
     /// The columns that this rank stores: all, or its own with distributed storage.
-    static HalfPlane held_plane(int nx, int nz);
-    explicit Synthesis(const HalfPlane& plane);
+    static HalfPlane held_plane(int nx, int nz, const OwnPlanes& rows);
+    Synthesis(const HalfPlane& plane, const OwnPlanes& rows);
     ~Synthesis();
     Synthesis(const Synthesis&) = delete;
     Synthesis& operator=(const Synthesis&) = delete;
@@ -45,6 +45,7 @@ public:
     }
     /// The columns that this rank transforms.
     PlaneRange own_columns() const { return transposition_.own_columns(); }
+    const OwnPlanes& columns() const { return transposition_.columns(); }
     std::size_t bytes() const;
 
 private:

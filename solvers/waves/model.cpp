@@ -19,7 +19,7 @@ void Model::fill(const Box& box, Sheet& sheet) {
 
 void Model::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
     const auto nx = static_cast<std::size_t>(box.nx()), row = nx * static_cast<std::size_t>(box.ny());
-    const PlaneRange rows = own_rows(box), layers = own_layers(box);
+    const PlaneRange rows{box.rows().lower(0), box.rows().upper(box.nz())}, layers = box.layers();
     const int deep = layers.end - layers.begin;
     parallel_for(0, deep * (rows.end - rows.begin), [&](int line) {
         const int j = layers.begin + line % deep, k = rows.begin + line / deep;

@@ -47,7 +47,7 @@ const Rule& rule_for(int distance) {
 
 Ocean::Ocean(const Sea& sea, const Box& box)
     : sea_(sea),
-      plane_(Synthesis::held_plane(box.nx(), box.nz())),
+      plane_(Synthesis::held_plane(box.nx(), box.nz(), box.rows())),
       dkx_(2 * pi / (box.nx() * box.spacing[0])),
       dkz_(box.dim == 3 ? 2 * pi / (box.nz() * box.spacing[2]) : 0),
       first_x_(box.x(0)),
@@ -57,7 +57,7 @@ Ocean::Ocean(const Sea& sea, const Box& box)
       height_(plane_.size()),
       moving_(plane_.size()),
       omega_(plane_.size(), 0),
-      synthesis_(plane_) {
+      synthesis_(plane_, box.rows()) {
     if (sea.spectrum.depth < infinity) along_.assign(plane_.size(), 0);
     if (sideways()) {
         xx_ = Values(box.of_sheet());
@@ -116,10 +116,8 @@ void Ocean::set_amplitudes() {
             if (!along_.empty()) along_[at] = reach(w.k, 0, sea_.spectrum.depth).along;
         }
     });
-    const Partition cut = plane_.whole() ? Partition{} : partition_of_columns(plane_.columns(), communicator().ranks());
-    const AllPlanes no_rows;
-    const OwnPlanes mine(cut);
-    const real variance = 2 * plane_sum(plane_.columns(), [&](int m) {  // a^2/2 = 2 |a/2|^2
+    const OwnPlanes mine = plane_.whole() ? OwnPlanes{} : synthesis_.columns();
+    const real variance = 2 * plane_sum(mine, plane_.columns(), [&](int m) {  // a^2/2 = 2 |a/2|^2
                               real sum = 0;
                               for (int n = 0; n < plane_.nz; ++n)
                                   // the column m = 0 contains both k and -k, every other column only one of them
@@ -195,7 +193,7 @@ void Ocean::fill(const Box& box, Sheet& sheet) {
 void Ocean::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
     const real d = sea_.spectrum.depth;
     const auto nx = static_cast<std::size_t>(box.nx()), stride = nx * static_cast<std::size_t>(box.ny());
-    const PlaneRange layers = own_layers(box);
+    const PlaneRange layers = box.layers();
     for (int j = layers.begin; j < layers.end; ++j) {
         const real y = box.y(j) - level;
         const std::size_t from = nx * static_cast<std::size_t>(j);

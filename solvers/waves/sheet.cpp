@@ -18,14 +18,14 @@ Partition partition_of_box(const Box& box, int ranks) {
     return planes >= ranks ? equal_partition(planes, ranks) : Partition{};
 }
 
-PlaneRange own_rows(const Box& box) {
-    if (box.dim == 2) return {0, 1};
-    return {detail::own_share.lower(0), detail::own_share.upper(box.nz())};
-}
+bool holds_own_planes(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
-PlaneRange own_layers(const Box& box) {
-    if (box.dim == 3) return {0, box.ny()};
-    return {detail::own_share.lower(0), detail::own_share.upper(box.ny())};
+Box Box::of_rank(const scene::Scene& scene) {
+    Box box(scene);
+    if (communicator().builds_serial()) return box;
+    const Partition planes = partition_of_box(box, communicator().ranks());
+    box.own = OwnPlanes(slab_of(planes, holds_own_planes(scene, planes) ? 1 : 0));
+    return box;
 }
 
 Sheet::Sheet(const Box& box, const Wanted& wanted) : height(box.of_sheet()) {

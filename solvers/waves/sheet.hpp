@@ -2,7 +2,7 @@
 // row of points.
 #pragma once
 #include "core/types.hpp"
-#include "parallel/held_planes.hpp"
+#include "parallel/grid.hpp"
 #include "scene/scene.hpp"
 
 #include <array>
@@ -26,14 +26,21 @@ struct Box {
     int dim = 2;
     std::array<int, 3> cells{1, 1, 1};
     Vec<3> origin{}, spacing{};
+    OwnPlanes own{};  // rows of the sheet (z), in 2D layers of cells (y); all of them unless the box is of_rank
     explicit Box(const scene::Scene& scene);
+    /// The box with this rank's planes and their storage.
+    static Box of_rank(const scene::Scene& scene);
     int nx() const { return cells[0]; }
     int ny() const { return cells[1]; }
     int nz() const { return cells[2]; }
     std::size_t points() const { return static_cast<std::size_t>(nx()) * static_cast<std::size_t>(nz()); }
+    /// This rank's rows of the sheet; in 2D its single row is replicated.
+    OwnPlanes rows() const { return dim == 3 ? own : OwnPlanes{}; }
+    /// This rank's layers of cells; in 3D all.
+    PlaneRange layers() const { return dim == 3 ? PlaneRange{0, ny()} : PlaneRange{own.lower(0), own.upper(ny())}; }
     /// Extents of fields on the sheet and on the cells: entries per plane, and planes along the partitioned axis.
-    Index<2> of_sheet() const { return {{nx(), nz()}}; }
-    Index<2> of_cells() const { return dim == 3 ? Index<2>{{nx() * ny(), nz()}} : Index<2>{{nx(), ny()}}; }
+    Extent<2> of_sheet() const { return {{{nx(), nz()}}, rows()}; }
+    Extent<2> of_cells() const { return {dim == 3 ? Index<2>{{nx() * ny(), nz()}} : Index<2>{{nx(), ny()}}, own}; }
     real x(int i) const { return origin[0] + (i + 0.5) * spacing[0]; }
     real y(int j) const { return origin[1] + (j + 0.5) * spacing[1]; }
     real z(int k) const { return dim == 3 ? origin[2] + (k + 0.5) * spacing[2] : 0; }
@@ -42,25 +49,23 @@ struct Box {
 /// In parallel: partition of the sheet's rows (z), in 2D of the layers of cells in the water (y); none where these are fewer than ranks.
 Partition partition_of_box(const Box& box, int ranks);
 
-/// This rank's part: rows of the sheet (in 2D its single row is replicated), and layers of cells (in 3D all).
-PlaneRange own_rows(const Box& box);
-PlaneRange own_layers(const Box& box);
+/// In parallel: returns whether fields can have distributed storage: not where whole fields are read on all ranks.
+bool holds_own_planes(const scene::Scene& scene, const Partition& cut);
 
-/// f(k) for those rows.
+/// f(k) for this rank's rows of the sheet.
 template <class F>
 void for_own_rows(const Box& box, F&& f) {
-    const PlaneRange rows = own_rows(box);
-    parallel_for(rows.begin, rows.end, f);
+    for_each_plane(box.rows(), 0, box.nz(), f);
 }
 
 /// f of every row of the sheet: sum in row order, and maximum.
 template <class F>
 real sum_of_rows(const Box& box, F&& f) {
-    return box.dim == 2 ? ordered_sum(1, f) : plane_sum(box.nz(), f);
+    return plane_sum(box.rows(), box.nz(), f);
 }
 template <class F>
 real most_of_rows(const Box& box, F&& f) {
-    return box.dim == 2 ? ordered_max(1, f) : plane_max(box.nz(), f);
+    return plane_max(box.rows(), box.nz(), f);
 }
 
 /// Distributed storage in parallel (parallel/plane_store.hpp): rows of the sheet in 3D, layers of cells in 2D.

@@ -9,20 +9,8 @@
 
 namespace weir::waves {
 
-bool holds_own_planes(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
-
-namespace {
-
-HeldPlanes held_planes(const scene::Scene& scene, const Box& box) {
-    const Partition cut = partition_of_box(box, communicator().ranks());
-    return HeldPlanes(cut, holds_own_planes(scene, cut), 1, false);
-}
-
-}  // namespace
-
 Waves::Waves(const scene::Scene& scene)
-    : box_(scene),
-      held_(held_planes(scene, box_)),
+    : box_(Box::of_rank(scene)),
       model_(make_model(scene, box_)),
       level_(model_->level() ? *model_->level() : mean_level(scene, box_)),
       density_(scene.number("fluid.density")),
@@ -47,8 +35,6 @@ Waves::Waves(const scene::Scene& scene)
     }
     compute();
     passes_.reset();
-    ghosts_filled_ = !held_.distributed();
-    held_.made();
 }
 
 StepReport Waves::step(real dt) {
@@ -57,14 +43,13 @@ StepReport Waves::step(real dt) {
 }
 
 void Waves::set_time(real t) {
-    const OwnPlanes mine = held_.own();
-    ghosts_filled_ = held_.cut().empty();
     time_ = t;
     compute();
 }
 
 /// Computes all output fields at the present time.
 void Waves::compute() {
+    ghosts_filled_ = !box_.own.distributed();
     {
         const auto timed = passes_.time("surface");
         model_->set_time(time_);
@@ -91,16 +76,14 @@ std::vector<Values*> Waves::shared() {
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void Waves::fill_ghosts() const {
+void Waves::refresh_planes() {
     if (ghosts_filled_) return;
-    const OwnPlanes mine = held_.own();
-    auto& own = const_cast<Waves&>(*this);  // only planes of other ranks are written: the state does not change
-    if (held_.distributed()) {
+    if (box_.own.distributed_storage()) {
         std::vector<Planes> all;
-        for (Values* values : own.shared()) all.push_back(planes_of(*values));
-        communicator().refresh(held_.cut(), all, 1, false);
+        for (Values* values : shared()) all.push_back(planes_of(*values));
+        communicator().refresh(box_.own.partition(), all, 1, false);
     } else {
-        for (Values* values : own.shared()) gather(*values);
+        for (Values* values : shared()) gather(*values);
     }
     ghosts_filled_ = true;
 }
@@ -122,7 +105,7 @@ void Waves::place_surface() {
 void Waves::fill_water() {
     const auto timed = passes_.time("water");
     const auto nx = static_cast<std::size_t>(box_.nx()), ny = static_cast<std::size_t>(box_.ny()), row = nx * ny;
-    const PlaneRange layers = own_layers(box_);
+    const PlaneRange layers = box_.layers();
     for_own_rows(box_, [&](int k) {
         for (int i = 0; i < box_.nx(); ++i) {
             const std::size_t at = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(k);
@@ -151,9 +134,9 @@ void Waves::make_foam() {
 }
 
 FieldSet Waves::fields() const {
-    fill_ghosts();
+    const_cast<Waves&>(*this).refresh_planes();  // only planes of other ranks are written: the state does not change
     FieldSet set;
-    if (held_.distributed()) set.cut = &held_.cut();
+    if (box_.own.distributed_storage()) set.cut = &box_.own.partition();
     GridView& grid = set.grid;
     grid.dim = box_.dim;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -211,13 +194,11 @@ real Waves::least_jacobian() const {
         const real* row = sheet_.jacobian.data() + static_cast<std::ptrdiff_t>(k) * box_.nx();
         return -*std::min_element(row, row + box_.nx());
     };
-    const OwnPlanes mine = held_.own();
     return -most_of_rows(box_, least_of_row);
 }
 
 /// The fraction of the sheet's patches with foam.
 real Waves::foam_cover() const {
-    const OwnPlanes mine = held_.own();
     const real covered = sum_of_rows(box_, [&](int k) {
         const real* row = foam_.data() + static_cast<std::ptrdiff_t>(k) * box_.nx();
         return static_cast<real>(std::count_if(row, row + box_.nx(), [](real f) { return f > 0; }));
@@ -238,7 +219,6 @@ std::string Waves::concern() const {
 /// Means over the horizontal area: each point is weighted by the relative area of its patch.
 std::vector<Integral> Waves::integrals() const {
     const auto nx = static_cast<std::size_t>(box_.nx());
-    const OwnPlanes mine = held_.own();
     const auto mean = [&](const auto& f) {
         return sum_of_rows(box_, [&](int k) {
             real sum = 0;

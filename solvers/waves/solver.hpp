@@ -11,9 +11,6 @@
 
 namespace weir::waves {
 
-/// In parallel: returns whether fields can have distributed storage: not where whole fields are read on all ranks.
-bool holds_own_planes(const scene::Scene& scene, const Partition& cut);
-
 class Waves final : public Solver {
 public:
     explicit Waves(const scene::Scene& scene);
@@ -24,7 +21,7 @@ public:
     bool checks_itself() const override { return true; }
     std::string concern() const override;
     FieldSet fields() const override;
-    bool holds_own_planes() const override { return held_.distributed(); }
+    bool holds_own_planes() const override { return box_.own.distributed_storage(); }
     /// "position" is that of the particle with the given rest position.
     bool answer(std::string_view field, const Vec<3>& at, std::span<real> values) const override;
     std::vector<Integral> integrals() const override;
@@ -41,7 +38,7 @@ public:
 private:
     void set_time(real t);
     void compute();
-    void fill_ghosts() const;
+    void refresh_planes();
     std::vector<Values*> shared();
     void place_surface();
     void fill_water();
@@ -53,7 +50,6 @@ private:
     bool shows_water() const { return box_.ny() > 1; }
 
     Box box_;
-    HeldPlanes held_;  // partitioned by partition_of_box
     std::unique_ptr<Model> model_;
     real level_, density_, g_, end_, time_ = 0;
     bool with_velocity_, gravity_, tension_;
@@ -61,9 +57,9 @@ private:
     Sheet sheet_;
     std::array<Values, 3> position_;  // of the surface's points [m]
     Values foam_;
-    Values level_set_;                   // of the water, where the grid shows it
-    std::array<Values, 3> water_;        // its velocity
-    mutable bool ghosts_filled_ = true;  // whether ghost planes, or all planes, are up to date
+    Values level_set_;             // of the water, where the grid shows it
+    std::array<Values, 3> water_;  // its velocity
+    bool ghosts_filled_ = true;    // whether ghost planes, or all planes, are up to date
     Passes passes_;
 };
 

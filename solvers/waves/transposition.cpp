@@ -24,20 +24,25 @@ Aligned<T> aligned(std::size_t count) {
     return made;
 }
 
-PlaneRange held_columns(int columns, int rows) {
-    if (!parts_columns(rows)) return {0, columns};
-    const Partition cut = partition_of_columns(columns, communicator().ranks());
-    return {cut.begin(communicator().rank()), cut.end(communicator().rank(), columns)};
+OwnPlanes own_columns_of(int columns, const OwnPlanes& rows) {
+    return rows.distributed() ? OwnPlanes(slab_of(partition_of_columns(columns, rows.partition().ranks()))) : OwnPlanes{};
+}
+
+PlaneRange held_columns(int columns, const OwnPlanes& rows) {
+    if (!rows.distributed_storage()) return {0, columns};
+    const OwnPlanes own = own_columns_of(columns, rows);
+    return {own.lower(0), own.upper(columns)};
 }
 
 template <class T>
-Transposition<T>::Transposition(int columns, int rows, const PlaneRange& held)
+Transposition<T>::Transposition(int columns, int rows, const OwnPlanes& own)
     : column_count_(columns),
       row_count_(rows),
-      held_(held),
+      by_row_(own),
+      by_column_(own_columns_of(columns, own)),
+      held_(held_columns(columns, own)),
       length_(padded(rows)),
-      by_column_(partition_of_columns(columns, communicator().ranks())),
-      columns_(aligned<T>(length_ * static_cast<std::size_t>(std::max(1, count(held))))) {}
+      columns_(aligned<T>(length_ * static_cast<std::size_t>(std::max(1, count(held_))))) {}
 
 template <class T>
 void Transposition<T>::make_room() {

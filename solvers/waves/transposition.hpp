@@ -1,6 +1,5 @@
 // Parallel transposition between columns of coefficients (along z) and rows of a field (along x), which are transformed one after the other
-// (FFTW). Where ranks share the field's rows (OwnPlanes), each also has a share of the columns, and the ranks transpose between the two
-// transforms. A field of one row is replicated.
+// (FFTW). Where ranks share the field's rows, each also has a share of the columns, and the ranks transpose between the two transforms.
 #pragma once
 #include "core/parallel.hpp"
 #include "core/types.hpp"
@@ -28,22 +27,23 @@ inline std::size_t padded(int n) { return (static_cast<std::size_t>(n) + 3) / 4 
 
 /// The partition of columns.
 inline Partition partition_of_columns(int columns, int ranks) { return equal_partition(columns, ranks); }
-/// Returns whether columns have distributed storage: where rows have.
-inline bool parts_columns(int rows) { return is_distributed() && detail::own_share.kept > 0 && rows > 1; }
-/// The columns that this rank stores.
-PlaneRange held_columns(int columns, int rows);
+/// This rank's share of the columns, where it has one of the rows; stored whole.
+OwnPlanes own_columns_of(int columns, const OwnPlanes& rows);
+/// The columns that this rank stores: its own where rows have distributed storage.
+PlaneRange held_columns(int columns, const OwnPlanes& rows);
 
 /// T: real or Complex.
 template <class T>
 class Transposition {
 public:
-    Transposition(int columns, int rows, const PlaneRange& held);
+    Transposition(int columns, int rows, const OwnPlanes& own);
 
     /// The entries of a stored column.
     T* column(int m) const { return columns_.get() + static_cast<std::size_t>(m - held_.begin) * length_; }
     /// The columns that this rank transforms.
-    PlaneRange own_columns() const { return transposes() ? columns_of(communicator().rank()) : PlaneRange{0, column_count_}; }
-    PlaneRange own_rows() const { return transposes() ? rows_of(communicator().rank()) : PlaneRange{0, row_count_}; }
+    PlaneRange own_columns() const { return {by_column_.lower(0), by_column_.upper(column_count_)}; }
+    PlaneRange own_rows() const { return {by_row_.lower(0), by_row_.upper(row_count_)}; }
+    const OwnPlanes& columns() const { return by_column_; }
 
     /// Backward: own rows of all columns, from own columns of all rows. row_at(n) receives the entries of row n; then transform(n) is
     /// called.
@@ -82,12 +82,9 @@ private:
         T *of_columns, *of_rows;  // positions in turned_ and in others_
         std::size_t columns_bytes, rows_bytes;
     };
-    bool transposes() const { return is_distributed() && row_count_ > 1; }
-    PlaneRange columns_of(int rank) const { return {by_column_.begin(rank), by_column_.end(rank, column_count_)}; }
-    PlaneRange rows_of(int rank) const {
-        const Partition& by_row = *detail::own_share.cut;
-        return {by_row.begin(rank), by_row.end(rank, row_count_)};
-    }
+    bool transposes() const { return by_row_.distributed(); }
+    PlaneRange columns_of(int rank) const { return {by_column_.partition().begin(rank), by_column_.partition().end(rank, column_count_)}; }
+    PlaneRange rows_of(int rank) const { return {by_row_.partition().begin(rank), by_row_.partition().end(rank, row_count_)}; }
     void make_room();
     std::vector<Block> blocks();
     template <class F>
@@ -97,9 +94,9 @@ private:
     T* own_rows_of(int m);
 
     int column_count_, row_count_;
+    OwnPlanes by_row_, by_column_;
     PlaneRange held_;
     std::size_t length_;              // of a column
-    Partition by_column_;                   // in parallel: the partition of columns
     std::vector<T> turned_, others_;  // a block for each other rank: of own columns, and of own rows
     Aligned<T> columns_;
 };
