@@ -63,7 +63,8 @@ LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame
       liquid_(s.extent(), 1),
       moved_(s.extent()),
       source_(s.extent()),
-      known_(s.extent()) {
+      known_(s.extent()),
+      known_next_(s.extent()) {
     refuse_open(scene, s);
     s.sides.read(scene, "temperature");
     conduction_ = Conduction<D>(melting_, s.extent(), s.u.h, s.rho, field_boundary(s.sides, "temperature"));
@@ -137,18 +138,21 @@ void LiquidHeat<D>::note(const MacState<D>& s) {
 template <int D>
 void LiquidHeat<D>::continue_outwards(const MacState<D>& s, int layers) {
     for_each_cell(s.extent(), [&](const Index<D>& I) { known_(I) = s.cells(I) == Cell::fluid ? 1 : 0; });
-    for (int layer = 2; layer < layers + 2; ++layer)
+    for (int layer = 2; layer < layers + 2; ++layer) {
         for_each_cell(s.extent(), [&](const Index<D>& I) {  // reads earlier layers only: independent of the order
-            if (known_(I) != 0) return;
+            std::uint8_t& mark = known_next_(I) = known_(I);
+            if (mark != 0) return;
             real sum = 0;
             int count = 0;
             for (int a = 0; a < D; ++a)
                 for (const int by : {-1, 1}) {
                     Index<D> J = I;
-                    if (frame_.step(J, a, by) && known_(J) != 0 && known_(J) < layer) sum += enthalpy_(J), ++count;
+                    if (frame_.step(J, a, by) && known_(J) != 0) sum += enthalpy_(J), ++count;
                 }
-            if (count > 0) enthalpy_(I) = sum / count, known_(I) = static_cast<std::uint8_t>(layer);
+            if (count > 0) enthalpy_(I) = sum / count, mark = static_cast<std::uint8_t>(layer);
         });
+        known_.swap(known_next_);
+    }
 }
 
 template <int D>
@@ -314,7 +318,7 @@ void LiquidHeat<D>::restore(const Checkpoint& from, const MacState<D>& s) {
 template <int D>
 std::size_t LiquidHeat<D>::bytes() const {
     std::size_t count =
-        conduction_.bytes() + supply_.bytes() + ice_.bytes() + known_.size() + surface_cells_.capacity() * sizeof(std::size_t);
+        conduction_.bytes() + supply_.bytes() + ice_.bytes() + known_.size() + known_next_.size() + surface_cells_.capacity() * sizeof(std::size_t);
     for (const auto* grid : {&enthalpy_, &temperature_, &liquid_, &moved_, &source_}) count += grid->size() * sizeof(real);
     return count;
 }

@@ -1,0 +1,76 @@
+// Exact sums of numbers in double precision: the result is the exact sum, rounded once. It depends neither on the order of the terms nor on
+// how they are distributed over threads and ranks. A fixed-point accumulator over the whole range of exponents, in chunks of 32 bits with
+// 31 bits for carries (Neal 2015, "Fast exact summation using small and large superaccumulators", section 2; Kulisch 1966).
+#pragma once
+#include "core/types.hpp"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace weir {
+
+/// Plain data: sums of several ranks may be sent and added.
+class ExactSum {
+public:
+    /// About 5 ns. Infinities and NaN are summed apart: the result is then that of IEEE addition.
+    void add(real term) {
+        const auto bits = std::bit_cast<std::uint64_t>(term);
+        const int exponent = static_cast<int>(bits >> 52 & 0x7ff);
+        if (exponent == 0x7ff) {
+            special_ += term;
+            return;
+        }
+        // term = ± mantissa 2^(place − 1074)
+        const std::uint64_t mantissa = (bits & 0xfffffffffffffULL) | (exponent > 0 ? std::uint64_t{1} << 52 : 0);
+        const int place = exponent > 0 ? exponent - 1 : 0, shift = place & 31;
+        const auto low = static_cast<std::int64_t>(mantissa << shift & 0xffffffffULL);
+        const auto high = static_cast<std::int64_t>(mantissa >> (32 - shift));
+        const auto k = static_cast<std::size_t>(place >> 5);
+        if (bits >> 63)
+            chunks_[k] -= low, chunks_[k + 1] -= high;
+        else
+            chunks_[k] += low, chunks_[k + 1] += high;
+        if (++pending_ == most_pending) carry();
+    }
+    void add(const ExactSum& other);
+    /// The sum, rounded to nearest, ties to even. (A subnormal result may be rounded twice.)
+    real value() const;
+
+private:
+    /// |high| < 2^53 each time: 2^9 terms stay below 2^62.
+    static constexpr int most_pending = 512;
+    /// Every chunk but the last into [0, 2^32).
+    void carry();
+
+    // 2^−1074 to 2^1024, and 2^41 terms more: 66 chunks of 32 bits, and one for the sign
+    std::array<std::int64_t, 67> chunks_{};
+    real special_ = 0;
+    std::int64_t pending_ = 0;
+};
+
+/// Exact sums of each component of T, a struct of real numbers.
+template <class T>
+class ExactSums {
+public:
+    void add(const T& terms) {
+        const auto list = std::bit_cast<Reals>(terms);
+        for (std::size_t i = 0; i < list.size(); ++i) sums_[i].add(list[i]);
+    }
+    void add(const ExactSums& other) {
+        for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i].add(other.sums_[i]);
+    }
+    T value() const {
+        Reals list;
+        for (std::size_t i = 0; i < list.size(); ++i) list[i] = sums_[i].value();
+        return std::bit_cast<T>(list);
+    }
+
+private:
+    using Reals = std::array<real, sizeof(T) / sizeof(real)>;
+    static_assert(sizeof(T) % sizeof(real) == 0);
+    std::array<ExactSum, sizeof(T) / sizeof(real)> sums_{};
+};
+
+}  // namespace weir
