@@ -155,7 +155,7 @@ TEST("in parallel a loop does its own planes, and a sum adds those of all ranks 
     set_communicator(nullptr);
 }
 
-TEST("loops and sums over a grid follow its extent, whatever rank or scope calls them; over a replicated box they cover all of it") {
+TEST("loops and sums over a grid follow its extent; over a replicated box they cover all of it on every rank") {
     set_communicator(std::make_unique<Echo>());
     const Index<2> cells{{3, 16}};
     const Grid<real, 2> q(Extent<2>(cells, OwnPlanes(slab_of(equal_partition(16, 2)))), 1);
