@@ -1,5 +1,6 @@
 #include "app/output_fields.hpp"
 
+#include "parallel/partition.hpp"
 #include "sim/registry.hpp"
 #include "validation/cost/effect_scene.hpp"
 
@@ -30,7 +31,7 @@ void add(std::vector<OutputQuantity>& list, OutputQuantity shown) {
 }
 
 void add_all(std::vector<OutputQuantity>& list, const scene::SolverKind& kind, const scene::Scene& scene, const std::string& takes) {
-    const std::unique_ptr<Solver> solver = kind.make(scene);
+    const std::unique_ptr<Solver> solver = kind.make(scene, {});
     for (const FieldView& field : static_cast<const Solver&>(*solver).fields().fields)
         add(list, {field.name, field.unit, place_of(field), takes});
     for (const Integral& integral : solver->integrals()) add(list, {integral.name, integral.unit, "integral", takes});
@@ -69,7 +70,7 @@ std::vector<OutputQuantity> output_quantities(const scene::SolverKind& kind) {
     }
     const scene::Scene plain = validation::plain_scene(kind, dim, cells);
     add_all(list, kind, plain, "");
-    if (const auto solver = kind.make(plain); !static_cast<const Solver&>(*solver).fields().sheets.empty())  // a surface by itself
+    if (const auto solver = kind.make(plain, {}); !static_cast<const Solver&>(*solver).fields().sheets.empty())  // a surface by itself
         add_all(list, kind, scene::parse(plain.source(), plain.file(), {kind.schema}, {{"grid.cells", "[8, 1, 8]"}}),
                 "grid.cells = [n, 1, m]");
     const std::string solids = plain.source() + "solids = [ { shape = \"box\", min = [0.3, 0, 0.3], max = [0.7, 0.7, 0.7] } ]\n";

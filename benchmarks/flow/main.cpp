@@ -34,7 +34,7 @@ std::unique_ptr<Solver> plume(int nx, int ny, int nz, const Warmth& warmth = {})
         "effects = {{ buoyancy = {{ alpha = -10.0 }} }}\n{6}",
         nx, ny, nz, static_cast<double>(ny) / nx, static_cast<double>(nz) / nx, warmth.temperature, warmth.substance);
     const auto kind = smoke::kind();
-    return kind.make(scene::parse(text, "plume", {kind.schema}));
+    return kind.make(scene::parse(text, "plume", {kind.schema}), {});
 }
 
 Measured measure(int nx, int ny, int nz) {

@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
     for (const Problem& problem : problems(cells))
         for (const int count : only > 0 ? std::vector<int>{only} : std::vector<int>{1, 2}) {
             set_threads(count);
-            const auto solver = kind.make(scene::parse(problem.scene, problem.name, {kind.schema}));
+            const auto solver = kind.make(scene::parse(problem.scene, problem.name, {kind.schema}), {});
             const double each = seconds_per_step(*solver, 0.5 * solver->advised_dt());
             const double columns = 1e-6 * cells * static_cast<double>(cells) / each;
             const char* line =

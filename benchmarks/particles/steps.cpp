@@ -63,7 +63,7 @@ double integral(const Solver& solver, const std::string& name) {
 Result run(const Job& job) {
     set_threads(job.threads);
     const scene::Scene scene = scene_of(job);
-    const std::unique_ptr<Solver> solver = job.solver == "pbf" ? pbf::kind().make(scene) : sph::kind().make(scene);
+    const std::unique_ptr<Solver> solver = job.solver == "pbf" ? pbf::kind().make(scene, {}) : sph::kind().make(scene, {});
     const double dt = scene.number("time.dt");
     while (solver->time() < job.start - 0.5 * dt) solver->step(dt);
     solver->passes().reset();

@@ -111,6 +111,23 @@ std::vector<std::int64_t> blocks_in_planes(const Grid<poisson::Cell, D>& cells) 
     return list;
 }
 
+/// The same problem with planes that the ranks of a partition share; every rank stores all of it.
+template <class T, int D>
+Grid<T, D> shared(const Grid<T, D>& q, const OwnPlanes& own) {
+    Grid<T, D> copy;
+    if (q.empty()) return copy;
+    copy = Grid<T, D>(Extent<D>(q.extent(), own));
+    std::copy(q.values().begin(), q.values().end(), copy.data());
+    return copy;
+}
+template <int D>
+bench::Problem<D> shared(const bench::Problem<D>& problem, const OwnPlanes& own) {
+    bench::Problem<D> copy = problem;
+    copy.A.cells = shared(problem.A.cells, own), copy.b = shared(problem.b, own);
+    for (auto& weight : copy.A.weight) weight = shared(weight, own);
+    return copy;
+}
+
 template <int D>
 Row measure(const std::string& solver, const std::string& name, const bench::Problem<D>& problem, int threads, const Choice& choice,
             Grid<real, D>& p) {
@@ -133,19 +150,24 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
     }
     set_threads(threads);
     const Partition cut = load_balanced_partition(blocks_in_planes(problem.A.cells), communicator().ranks());
+    const OwnPlanes own(slab_of(cut));
+    const bench::Problem<D> of_ranks = own.distributed() ? shared(problem, own) : bench::Problem<D>{};
+    Grid<real, D> parts = own.distributed() ? shared(p, own) : Grid<real, D>{};
     const bool slow = solver == "cholmod" || solver == "eigen_iccg" || solver == "cg_mic0" || solver.starts_with("petsc");
     const auto method = poisson::make_solver<D>(solver, {.tolerance = 1e-8, .max_iterations = 5000});
     row.setup_ms = row.solve_ms = infinity;
+    bool shares = false;
+    const auto set_up = [&] {
+        if (own.distributed()) method->setup(of_ranks.A), shares = method->shares_planes();
+        if (!shares) method->setup(problem.A);
+    };
     for (int k = 0; k < (slow ? std::min(2, choice.repeat) : choice.repeat); ++k) {
-        if (!(slow && k > 0)) method->setup(problem.A);
-        p.fill(0);
+        if (!(slow && k > 0)) set_up();
+        p.fill(0), parts.fill(0);
         communicator().largest(0);  // barrier
         try {
-            const OwnPlanes own(cut);
-            const bool shares = method->shares_planes();  // of a cut that is there: so asked after it
-            const AllPlanes all(!shares);
-            const auto& report = method->solve(p, problem.b);
-            if (shares) gather(p);
+            const auto& report = shares ? method->solve(parts, of_ranks.b) : method->solve(p, problem.b);
+            if (shares) gather(parts), std::copy(parts.values().begin(), parts.values().end(), p.data());
             row.setup_ms = std::min(row.setup_ms, 1e3 * report.setup_seconds);
             row.solve_ms = std::min(row.solve_ms, 1e3 * report.solve_seconds);
             row.iterations = report.iterations;

@@ -40,7 +40,7 @@ std::unique_ptr<Solver> build(const scene::SolverKind& kind, const Size& size, c
         "fluid = {{ density = 1000.0 }}\nliquid = [ {{ shape = \"wave\", level = {}, amplitude = 0.1, wavelength = 4.0 }} ]\n"
         "effects = {{ gravity = {{ g = [0.0, -9.81, 0.0] }} }}\nscheme = {{ {}, poisson = {{ tolerance = 1e-6 }} }}\n",
         kind.schema.name, size.surface, size.depth, size.surface, h * size.depth, 0.875 * h * size.depth, scheme);
-    return kind.make(scene::parse(text, "tank", {kind.schema}));
+    return kind.make(scene::parse(text, "tank", {kind.schema}), {});
 }
 
 real seconds() { return std::chrono::duration<real>(std::chrono::steady_clock::now().time_since_epoch()).count(); }

@@ -44,7 +44,7 @@ real median(std::vector<real> list) {
 void measure(const Problem& problem, int threads, int steps, bool csv) {
     const auto kind = water::kind();
     const std::vector<scene::SolverSchema> schemas{kind.schema};
-    const auto solver = kind.make(scene::parse(problem.scene, problem.name, schemas));
+    const auto solver = kind.make(scene::parse(problem.scene, problem.name, schemas), {});
     set_threads(threads);
     while (solver->time() < 0.25) solver->step(solver->advised_dt());  // until the front runs: surface and splash are what costs
     std::vector<real> step_ms;

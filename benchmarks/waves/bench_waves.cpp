@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
             "= \"pierson_moskowitz\", wind = 12.0 }}, {1} }}\n",
             cells, ocean.waves, ocean.effects);
         const double start = now();
-        const auto solver = kind.make(scene::parse(text, ocean.name, schemas));
+        const auto solver = kind.make(scene::parse(text, ocean.name, schemas), {});
         const double made = 1e3 * (now() - start);
         std::vector<double> ms;
         for (const int count : {1, 2}) {

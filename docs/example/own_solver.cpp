@@ -117,7 +117,7 @@ weir::scene::SolverKind spreading() {
                   {.name = "radius", .doc = "Of the disc.", .unit = "m", .required = true, .min = 0.0, .min_open = true},
                   {.name = "rate", .doc = "How fast it warms.", .unit = "K/s", .required = true}},
          .strength = {"rate"}}};
-    kind.make = [](const weir::scene::Scene& scene) { return std::make_unique<Spreading>(scene); };
+    kind.make = [](const weir::scene::Scene& scene, const weir::Partition&) { return std::make_unique<Spreading>(scene); };
     return kind;
 }
 

@@ -142,7 +142,7 @@ Key floats_key() {
                  .variants_from = &scene::motions}}};
 }
 
-std::unique_ptr<Solver> make(const scene::Scene& scene) {
+std::unique_ptr<Solver> make(const scene::Scene& scene, const Partition&) {
     if (scene.text("scheme.model") == "columns") return std::make_unique<Columns>(scene);
     if (!scene.root().tables("floats").empty())
         scene.refuse("floats", "the model \"shallow_water\" has no floating objects",

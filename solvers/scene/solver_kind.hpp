@@ -41,7 +41,8 @@ struct ParallelSupport {
     std::function<bool(const Scene&, const Partition&)> distributed_storage{};
     /// Estimate of what a rank sends in such a step. Empty: unknown.
     std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> traffic{};
-    /// The partition of a scene's planes among `ranks` ranks; an empty one: replicated work. No function: the equal parts of equal_partition.
+    /// The partition of a scene's planes among `ranks` ranks; an empty one: replicated work. No function: the equal parts of
+    /// equal_partition.
     std::function<Partition(const Scene&, int ranks)> partition{};
     /// The work of a step per plane of the slowest axis, in any unit: at the start of a scene, or for a state (collective). Empty: equal
     /// for all planes.
@@ -50,7 +51,8 @@ struct ParallelSupport {
 
 struct SolverKind {
     SolverSchema schema;
-    std::function<std::unique_ptr<Solver>(const Scene&)> make;
+    /// Constructs the solver of a scene. In parallel this rank gets its part of the partition; an empty one: every rank does all work.
+    std::function<std::unique_ptr<Solver>(const Scene&, const Partition&)> make;
     PlainStep plain{};
     ParallelSupport parallel{};
 };

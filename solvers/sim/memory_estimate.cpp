@@ -8,6 +8,7 @@
 #include "output/frame_format.hpp"
 #include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
+#include "sim/shares.hpp"
 #include "surfaces/contour.hpp"
 #include "surfaces/reconstruction.hpp"
 
@@ -181,10 +182,15 @@ private:
     bool before_;
 };
 
+std::unique_ptr<Solver> solver_of(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
+    const scene::SolverKind& kind = kind_named(scene.solver(), kinds);
+    return kind.make(scene, equal_shares(scene, communicator().ranks(), kind));
+}
+
 /// Builds a scene and takes one step of it, as long as its first.
 Held hold(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
     const WholeGrids whole;  // in parallel too: what one process would allocate
-    Held held{.cells = scene.root().numbers("grid.cells"), .solver = kind_named(scene.solver(), kinds).make(scene)};
+    Held held{.cells = scene.root().numbers("grid.cells"), .solver = solver_of(scene, kinds)};
     Solver& solver = *held.solver;
     held.fields = static_cast<const Solver&>(solver).fields();
     held.particles = particles_in(held.fields);
@@ -200,7 +206,7 @@ Held hold(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds
 /// Determined from a copy of a few cells, or of more where so few make no valid scene.
 bool consists_of_particles(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
     for (const double few : {1024.0, 16384.0}) try {
-            const auto solver = kind_named(scene.solver(), kinds).make(small_copy(scene, kinds, few, Copy::similar));
+            const auto solver = solver_of(small_copy(scene, kinds, few, Copy::similar), kinds);
             return static_cast<const Solver&>(*solver).fields().find(particle_set_name, "position") != nullptr;
         } catch (const BadInput&) {
         }

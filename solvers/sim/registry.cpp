@@ -69,15 +69,18 @@ void require_ranks(const scene::Scene& scene, int ranks, const std::vector<scene
                      "at most " + std::to_string(planes));
 }
 
+Partition equal_shares(const scene::Scene& scene, int ranks, const scene::SolverKind& kind) {
+    if (ranks == 1 || kind.parallel.shared == scene::Shared::by_particles) return {};
+    return kind.parallel.partition ? kind.parallel.partition(scene, ranks) : equal_partition(planes_of(scene), ranks);
+}
+
 Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& kind) {
     Shares shares{.shared = kind.parallel.shared};
     if (ranks == 1 || shares.shared == scene::Shared::by_particles) return shares;
-    if (kind.parallel.partition)
-        shares.cut = kind.parallel.partition(scene, ranks);
-    else if (kind.parallel.work_of_planes)
+    if (kind.parallel.work_of_planes && !kind.parallel.partition)
         shares.cut = load_balanced_partition(kind.parallel.work_of_planes(scene, nullptr), ranks);
     else
-        shares.cut = equal_partition(planes_of(scene), ranks);
+        shares.cut = equal_shares(scene, ranks, kind);
     if (shares.cut.empty())
         shares.replicated_work = {scene::ReplicatedWork::everything};
     else if (kind.parallel.replicated_work)

@@ -35,7 +35,7 @@ struct Samples {
     real volume(F&& f) const {
         real one = 1;
         for (int a = 0; a < D; ++a) one *= step[a];
-        return one * sum_over(count, [&](const Index<D>& I) {
+        return one * sum_over(replicated(count), [&](const Index<D>& I) {
                    Vec<D> x;
                    for (int a = 0; a < D; ++a) x[a] = origin[a] + step[a] * (I[a] + 0.5);
                    return f(x);

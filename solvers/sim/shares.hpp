@@ -18,4 +18,7 @@ struct Shares {
 Shares shares_of(const scene::Scene& scene, int ranks, const std::vector<scene::SolverKind>& kinds = registry());
 Shares shares_of(const scene::Scene& scene, int ranks, const scene::SolverKind& kind);
 
+/// The partition of a scene without knowledge of the work of its planes.
+Partition equal_shares(const scene::Scene& scene, int ranks, const scene::SolverKind& kind);
+
 }  // namespace weir::sim

@@ -113,8 +113,7 @@ int threads_for(const scene::Scene& scene) {
 
 std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Partition& cut) {
     const ProblemSizeScope size(cells_of(scene));
-    const PartitionScope partition(cut);
-    return kind.make(scene);
+    return kind.make(scene, cut);
 }
 
 std::vector<Change> changes_in(const scene::Scene& scene) {

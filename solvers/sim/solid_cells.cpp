@@ -25,7 +25,7 @@ auto marker(const scene::Scene& scene) {
         }
         lo[D - 1] = static_cast<int>(begin / plane), hi[D - 1] = static_cast<int>(end / plane);
         std::vector<std::uint8_t> inside(end - begin);
-        for_each_in<D>(lo, hi, [&](const Index<D>& I) {
+        for_each_in(lo, replicated(hi), [&](const Index<D>& I) {
             Vec<D> x;
             std::size_t cell = 0, stride = 1;
             for (int a = 0; a < D; ++a) {

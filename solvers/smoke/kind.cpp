@@ -57,7 +57,7 @@ scene::SolverKind kind() {
     schema.effects = schemas_of(effect_kinds());
     schema.effects.push_back(geometry::brush_schema());
     return {schema,
-            make_without_surface<FlowSolver>,
+            [](const scene::Scene& scene, const Partition&) { return make_without_surface<FlowSolver>(scene); },
             {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
             {.check = check_parallel,
              .replicated_work = mac::replicated_pressure,

@@ -22,7 +22,7 @@ scene::SolverKind transport_kind() {
     schema.doc = "Cell fields carried by a prescribed velocity, to measure advection schemes.";
     schema.keys = {scheme_key(AdvectionOptions::keys()), PrescribedFlow<2>::key(), initial_keys({"level_set", "tracer"})};
     schema.without = {"time.stop_when_steady", "fluid", "solids", "emitters", "initial.velocity"};
-    return {schema, make_without_surface<TransportSolver>};
+    return {schema, [](const scene::Scene& scene, const Partition&) { return make_without_surface<TransportSolver>(scene); }};
 }
 
 scene::SolverKind poisson_kind() {
@@ -36,7 +36,7 @@ scene::SolverKind poisson_kind() {
     schema.doc = "One manufactured pressure problem on the unit square or cube, solved in one step.";
     schema.keys = {scheme_key({PoissonChoice::key()}), problem};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial"};
-    return {schema, make_without_surface<PoissonProblemSolver>};
+    return {schema, [](const scene::Scene& scene, const Partition&) { return make_without_surface<PoissonProblemSolver>(scene); }};
 }
 
 scene::SolverKind phase_diagram_kind() {
@@ -47,7 +47,7 @@ scene::SolverKind phase_diagram_kind() {
     schema.dims = {2};
     schema.keys = {matter::substance_key(), PhaseDiagram::samples_key()};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
-    return {schema, [](const scene::Scene& scene) { return std::make_unique<PhaseDiagram>(scene); }};
+    return {schema, [](const scene::Scene& scene, const Partition&) { return std::make_unique<PhaseDiagram>(scene); }};
 }
 
 scene::SolverKind reconstruction_kind() {
@@ -62,7 +62,7 @@ scene::SolverKind reconstruction_kind() {
     schema.keys = {output, ReconstructionStudy::jitter_key()};
     schema.without = {
         "time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "solids", "emitters", "initial", "probes", "changes"};
-    return {schema, [](const scene::Scene& scene) { return std::make_unique<ReconstructionStudy>(scene); }};
+    return {schema, [](const scene::Scene& scene, const Partition&) { return std::make_unique<ReconstructionStudy>(scene); }};
 }
 
 scene::SolverKind closed_vessel_kind() {
@@ -73,7 +73,7 @@ scene::SolverKind closed_vessel_kind() {
     schema.dims = {2};
     schema.keys = ClosedVessel::keys();
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
-    return {schema, [](const scene::Scene& scene) { return std::make_unique<ClosedVessel>(scene); }};
+    return {schema, [](const scene::Scene& scene, const Partition&) { return std::make_unique<ClosedVessel>(scene); }};
 }
 
 }  // namespace weir::studies

@@ -44,7 +44,7 @@ PoissonProblemSolver<D>::PoissonProblemSolver(const scene::Scene& scene) {
         });
     }
     const real scale = -lattice.h[0] * lattice.h[0];
-    for_each_cell(lattice.cells, [&](const Index<D>& I) { rhs_(I) = scale * problem->f(lattice_.cell_centre(I).data()); });
+    for_each_cell(replicated(lattice.cells), [&](const Index<D>& I) { rhs_(I) = scale * problem->f(lattice_.cell_centre(I).data()); });
     solver_->setup(matrix_);
 }
 

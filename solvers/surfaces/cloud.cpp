@@ -52,8 +52,8 @@ void gather(const Components& position, const Domain& domain, real band, Cloud& 
     if (domain.flat) add_layers(cloud);
 }
 
-Extent extent_of(const Cloud& cloud) {
-    Extent extent{.box = {}, .least = {}, .most = {}, .count = cloud.count()};
+CloudExtent extent_of(const Cloud& cloud) {
+    CloudExtent extent{.box = {}, .least = {}, .most = {}, .count = cloud.count()};
     extent.box = particles::CellSort().box(cloud.coordinates(), cloud.count(), extent.finite);
     for (std::size_t a = 0; a < 3 && cloud.own > 0; ++a) {
         const auto [least, most] = std::minmax_element(cloud.x[a].begin(), cloud.x[a].begin() + cloud.own);
@@ -62,13 +62,13 @@ Extent extent_of(const Cloud& cloud) {
     return extent;
 }
 
-Extent extent_of_all(const Extent& own) {
-    Extent all;
+CloudExtent extent_of_all(const CloudExtent& own) {
+    CloudExtent all;
     bool any = false;
-    for (const Extent& one : of_ranks(own)) {
+    for (const CloudExtent& one : of_ranks(own)) {
         all.finite = all.finite && one.finite;
         if (one.count == 0) continue;
-        const Extent before = any ? all : one;
+        const CloudExtent before = any ? all : one;
         for (std::size_t a = 0; a < 3; ++a) {
             all.box.lo[a] = std::min(before.box.lo[a], one.box.lo[a]), all.box.hi[a] = std::max(before.box.hi[a], one.box.hi[a]);
             all.least[a] = std::min(before.least[a], one.least[a]), all.most[a] = std::max(before.most[a], one.most[a]);

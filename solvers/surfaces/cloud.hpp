@@ -48,15 +48,15 @@ using Components = std::vector<std::span<const real>>;
 void gather(const Components& position, const Domain& domain, real band, Cloud& cloud);
 
 /// Global properties of all particles.
-struct Extent {
+struct CloudExtent {
     particles::Box box;               // of particles and images
     std::array<real, 3> least, most;  // of particles
     std::int64_t count = 0;           // with images
     bool finite = true;
 };
-Extent extent_of(const Cloud& cloud);
+CloudExtent extent_of(const Cloud& cloud);
 /// Combines those of all ranks.
-Extent extent_of_all(const Extent& own);
+CloudExtent extent_of_all(const CloudExtent& own);
 
 /// This rank's components of particles: its part where they are distributed, otherwise an equal share.
 Components part_of(const FieldSet& fields, const FieldView& field);

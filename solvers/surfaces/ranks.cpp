@@ -67,8 +67,7 @@ PlaneStore<real> Reconstruction::with_planes_beside(const FieldSet& fields, cons
     const auto axis = static_cast<std::size_t>(samples_.slowest());
     const int rank = communicator().rank(), planes = fields.grid.cells[axis], begin = fields.cut->begin(rank);
     const std::size_t plane = field.data[0].size() / static_cast<std::size_t>(planes), first = plane * static_cast<std::size_t>(begin);
-    const OwnPlanes mine(*fields.cut, 1, ghost_planes);
-    PlaneStore<real> known(0, plane, planes, 0, 0.0);
+    PlaneStore<real> known(slab_of(*fields.cut, ghost_planes), 0, plane, planes, 0, 0.0);
     std::copy_n(field.data[0].data() + first, plane * static_cast<std::size_t>(fields.cut->end(rank, planes) - begin),
                 known.data() + first);
     communicator().refresh(*fields.cut, {known.data(), plane * sizeof(real), planes, 0, known.held()}, ghost_planes, false);

@@ -138,7 +138,7 @@ void Reconstruction::from_particles(const FieldSet& fields) {
     const Components own = in_parts_ ? part_of(fields, *position) : position->data;
     const FieldView* velocity = fields.find(position->set, "velocity");
     velocity_ = !velocity ? Components{} : in_parts_ ? part_of(fields, *velocity) : velocity->data;
-    Extent all;
+    CloudExtent all;
     {
         const auto timed = passes_.time("particles");
         cloud_.spacing = fields.grid.spacing[0] / (markers ? markers_per_cell : 1);
@@ -191,7 +191,7 @@ void Reconstruction::lay_plane() {
 }
 
 /// Sides lie midway between samples where the domain is a whole number of cells wide. The ends of the lattice are outside.
-void Reconstruction::lay_samples(const Extent& all) {
+void Reconstruction::lay_samples(const CloudExtent& all) {
     samples_.unit = cloud_.spacing;
     const real step = options_.cell * cloud_.spacing;
     if (domain_.flat) samples_.spacing[0] = step, lay_plane();

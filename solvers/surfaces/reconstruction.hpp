@@ -38,7 +38,7 @@ private:
     void from_level_set(const FieldSet& fields);
     void from_particles(const FieldSet& fields);
     void take_particles(const FieldSet& fields, const FieldView& position);
-    void lay_samples(const Extent& all);
+    void lay_samples(const CloudExtent& all);
     void fill_holes(const FieldSet& fields);
     void lay_plane();
     void make_contour();

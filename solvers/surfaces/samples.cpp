@@ -11,13 +11,12 @@ constexpr int beyond = 2;  // ghost planes on each side: the neighbours of point
 void Samples::make_room(const Partition& cut) {
     const int count = n[static_cast<std::size_t>(slowest())];
     if (cut.empty()) {
-        depth.resize(0, plane(), count, 0);
+        depth.resize(nullptr, 0, plane(), count, 0);
         own = held = {0, count}, layers = {0, count - 1};
         return;
     }
     const int rank = communicator().rank();
-    const OwnPlanes mine(cut, 1, beyond);
-    depth = PlaneStore<float>(0, plane(), count, 0, 0.0F);
+    depth = PlaneStore<float>(slab_of(cut, beyond), 0, plane(), count, 0, 0.0F);
     layers = layers_of(cut, rank), own = {cut.begin(rank), cut.end(rank, count)};
     held = {std::max(0, own.begin - beyond), std::min(count, own.end + beyond)};
 }

@@ -128,10 +128,11 @@ TEST_IN_2D_AND_3D("bodies among particles are the same to the last bit on every 
         std::string all = bodies;
         all.replace(all.find("SLIP"), 4, sph ? "no" : "free");
         const std::string scheme = "backend = \"" + on + "\"";
-        if (!sph) return pbf::kind().make(test::pbf_scene<D>(test::box<D>(1, 1, 1), scheme, all));
+        if (!sph) return pbf::kind().make(test::pbf_scene<D>(test::box<D>(1, 1, 1), scheme, all), {});
         return sph::kind().make(test::sph_scene<D>(scheme + ", sound_speed = 20",
                                                    all + "effects.viscosity = {}\neffects.density_diffusion = {}\neffects.gravity.g = " +
-                                                       (D == 2 ? "[0, -9.81]\n" : "[0, -9.81, 0]\n")));
+                                                       (D == 2 ? "[0, -9.81]\n" : "[0, -9.81, 0]\n")),
+                                {});
     };
     const auto expect_same = [](const Solver& one, const Solver& two, const std::string& what) {
         const FieldSet a = one.fields(), b = two.fields();

@@ -21,7 +21,7 @@ scene::Scene dam(const std::string& solver, const std::string& backend, const st
         backend, scheme, test::list<D>(0, -9.81, 0), more);
     return scene::parse(text, "dam.toml", sim::schemas());
 }
-std::unique_ptr<Solver> made(const scene::Scene& scene) { return sim::kind_named(scene.solver()).make(scene); }
+std::unique_ptr<Solver> made(const scene::Scene& scene) { return sim::kind_named(scene.solver()).make(scene, {}); }
 
 constexpr real h = 2.0 / 16;
 

@@ -156,7 +156,7 @@ inline std::vector<scene::SolverKind> fake_kinds() {
         {.name = "fail_at", .type = scene::Type::integer, .doc = "Step that yields a NaN.", .fallback = std::int64_t{-1}},
         {.name = "stall_at", .type = scene::Type::integer, .doc = "Step after which none is advised.", .fallback = std::int64_t{-1}},
         {.name = "stable_dt", .type = scene::Type::number, .doc = "The longest stable step.", .unit = "s"}};
-    kind.make = [](const scene::Scene& scene) { return std::make_unique<FakeSolver>(scene); };
+    kind.make = [](const scene::Scene& scene, const Partition&) { return std::make_unique<FakeSolver>(scene); };
     return {kind};
 }
 

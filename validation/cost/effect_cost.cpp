@@ -5,6 +5,7 @@
 #include "output/atomic_file.hpp"
 #include "output/folder_lock.hpp"
 #include "output/machine.hpp"
+#include "parallel/partition.hpp"
 #include "validation/cost/effect_scene.hpp"
 #include "validation/cost/load.hpp"
 
@@ -51,8 +52,8 @@ void time_interleaved(EffectCost& cost, Solver& with, Solver& without, real dt, 
 EffectCost measure_effect(const scene::SolverKind& kind, int dim, int cells, const std::string& effect, const EffectCostOptions& options) {
     EffectCost cost{.solver = kind.schema.name, .dim = dim, .cells = cells, .effect = effect};
     try {
-        const auto without = kind.make(plain_scene(kind, dim, cells, {effect}));
-        const auto with = kind.make(scene_with(kind, dim, cells, {effect}, usual_strength));
+        const auto without = kind.make(plain_scene(kind, dim, cells, {effect}), {});
+        const auto with = kind.make(scene_with(kind, dim, cells, {effect}, usual_strength), {});
         time_interleaved(cost, *with, *without, 0.2 * std::min({with->advised_dt(), without->advised_dt(), 1.0}), options);
         cost.bytes_without = without->bytes(), cost.bytes_with = with->bytes();
         for (const EffectPlan& plan : with->effects()) {

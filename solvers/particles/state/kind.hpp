@@ -19,8 +19,9 @@ std::unique_ptr<Solver> make_in(int dim, const scene::Scene& scene) {
     return std::make_unique<On<3>>(scene);
 }
 
+/// Particles have their own partition, which moves with them.
 template <template <int> class OnThreads, template <int> class OnReference, template <int> class OnDevice>
-std::unique_ptr<Solver> make_solver(const scene::Scene& scene) {
+std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const Partition&) {
     switch (backend_of(scene).kind) {
         case backend::Choice::Kind::opencl:
             return make_in<OnDevice>(scene.dim(), scene);

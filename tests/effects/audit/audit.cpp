@@ -31,7 +31,7 @@ struct Watched {
 
     Watched(const scene::SolverKind& kind, scene::Scene what, real dt) : scene(std::move(what)) {
         const long before = bytes_held();
-        solver = kind.make(scene);
+        solver = kind.make(scene, {});
         for (int i = 0; i < warm_up; ++i) solver->step(dt);
         held = bytes_held() - before;
         const long count = allocations_so_far();
@@ -55,7 +55,7 @@ std::string text(const Names& names) { return names.empty() ? "none" : fmt::form
 
 /// Small enough for the plain scene and for every effect at negligible strength.
 real common_dt(const scene::SolverKind& kind, const scene::Scene& plain) {
-    return 0.2 * std::min(kind.make(plain)->advised_dt(), 1.0);  // some solvers are stable for any
+    return 0.2 * std::min(kind.make(plain, {})->advised_dt(), 1.0);  // some solvers are stable for any
 }
 
 /// Whether the fields that both have hold the same numbers; +0 and -0 are the same number.

@@ -34,14 +34,14 @@ struct Step {
 };
 
 Step counted_step(const scene::SolverKind& kind, const scene::Scene& scene, real dt) {
-    const auto solver = kind.make(scene);
+    const auto solver = kind.make(scene, {});
     for (int i = 0; i < warm_up; ++i) solver->step(dt);
     auto plans = solver->effects();
     return {test::instructions_of_step(*solver, dt), std::move(plans)};
 }
 
 real short_step(const scene::SolverKind& kind, const scene::Scene& plain) {
-    return part_of_step * std::min(kind.make(plain)->advised_dt(), 1.0);
+    return part_of_step * std::min(kind.make(plain, {})->advised_dt(), 1.0);
 }
 
 long within(const Instructions& counts, const std::string& pass) { return counts.count(pass) ? counts.at(pass) : 0; }
@@ -100,7 +100,7 @@ int audit(const scene::SolverKind& kind, int dim) {
     const real dt = short_step(kind, plain);
     const long before = total(counted_step(kind, plain, dt).counts);
     {
-        const auto used = kind.make(validation::scene_with(kind, dim, cells_along(dim), all, validation::negligible));
+        const auto used = kind.make(validation::scene_with(kind, dim, cells_along(dim), all, validation::negligible), {});
         used->step(0.01 * dt);
     }
     const long after = total(counted_step(kind, plain, dt).counts);

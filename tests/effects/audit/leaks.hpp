@@ -95,7 +95,7 @@ inline scene::SolverKind leaky_kind(Leak leak) {
     kind.schema.doc = "Without physics.";
     kind.schema.effects = {
         {"extra", "Adds to the velocity.", {{.name = "strength", .type = scene::Type::number, .required = true}}, {"strength"}}};
-    kind.make = [leak](const scene::Scene& scene) { return std::make_unique<LeakySolver>(scene, leak); };
+    kind.make = [leak](const scene::Scene& scene, const Partition&) { return std::make_unique<LeakySolver>(scene, leak); };
     kind.plain = {{"velocity"}, {"move"}, ""};
     return kind;
 }

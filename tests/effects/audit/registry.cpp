@@ -59,7 +59,7 @@ TEST_IN_2D_AND_3D("a solver tells of every byte that it holds, with each effect 
         for (const auto& effects : scenes) {
             const scene::Scene scene = validation::scene_with(kind, D, cells_of(kind, D), effects, validation::negligible);
             const long before = bytes_held();
-            const auto solver = kind.make(scene);
+            const auto solver = kind.make(scene, {});
             for (int s = 0; s < 2; ++s) solver->step(std::min(solver->advised_dt(), 1e-3));
             const long held = bytes_held() - before, told = static_cast<long>(solver->bytes());
             EXPECT_LT(std::abs(held - told), held / 100) << kind.schema.name << " with " << fmt::format("{}", fmt::join(effects, ", "))

@@ -27,7 +27,7 @@ Names pass_names(const Solver& solver) {
 const char* const stirred = "initial.velocity = { name = \"random\" }\n";
 
 std::unique_ptr<Solver> make(int dim, const std::string& rest) {
-    return smoke::kind().make(test::mac_scene(test::unit_box(dim, 16, stirred + rest)));
+    return smoke::kind().make(test::mac_scene(test::unit_box(dim, 16, stirred + rest)), {});
 }
 
 /// A tank of 1.5 m by 1 m (by 0.75 m) with a block of water in its lower left corner.
@@ -38,7 +38,7 @@ std::unique_ptr<Solver> make_water(int dim, const std::string& transfer, const s
                              "liquid = [ { shape = \"box\", min = " + test::list(dim, "0.0") + ", max = [" + width + ", " + height +
                              (flat ? "" : ", 0.75") + "] } ]\neffects = { gravity = { g = [0.0, -9.81" + (flat ? "" : ", 0.0") +
                              "] } }\nscheme = { transfer = \"" + transfer + "\" }\n";
-    return water::kind().make(scene::parse(text, "water.toml", {water::kind().schema}));
+    return water::kind().make(scene::parse(text, "water.toml", {water::kind().schema}), {});
 }
 
 /// Water 36 cells deep on tall cells, with a wave that moves knots of the columns up and down; `more` is added.
@@ -49,7 +49,7 @@ std::unique_ptr<Solver> make_tall(int dim, const std::string& scheme, const std:
                              "] }\ntime = { end = 9.0 }\nfluid = { density = 1000.0 }\n" +
                              "liquid = [ { shape = \"wave\", level = 1.13, amplitude = 0.12, wavelength = 0.75 } ]\n" +
                              "effects.gravity.g = [0.0, -9.81" + (flat ? "" : ", 0.0") + "]\nscheme = { " + scheme + " }\n" + more;
-    return tallcell::kind().make(scene::parse(text, "tall.toml", {tallcell::kind().schema}));
+    return tallcell::kind().make(scene::parse(text, "tall.toml", {tallcell::kind().schema}), {});
 }
 
 }  // namespace

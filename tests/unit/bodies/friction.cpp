@@ -92,7 +92,7 @@ TEST("a body with friction goes on after a restart as if nothing had been") {
     const auto scene =
         scene_of(sticky("{ shape = \"box\", min = [0.4, 0.6], max = [0.7, 0.8], density = 1500.0, spin = [2.0], slip = \"no\" }", 32, 1e-3,
                         "[0.0, -9.81]"));
-    const auto solver = smoke::kind().make(scene), again = smoke::kind().make(scene);
+    const auto solver = smoke::kind().make(scene, {}), again = smoke::kind().make(scene, {});
     for (int i = 0; i < 5; ++i) solver->step(0.005);
     Checkpoint kept;
     solver->save(kept);

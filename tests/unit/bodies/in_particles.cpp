@@ -13,7 +13,7 @@ namespace {
 std::unique_ptr<Solver> particles_of(const std::string& text) {
     static const std::vector<scene::SolverSchema> schemas{sph::kind().schema, pbf::kind().schema};
     const scene::Scene scene = scene::parse(text, "bodies.toml", schemas);
-    return scene.solver() == "sph" ? sph::kind().make(scene) : pbf::kind().make(scene);
+    return scene.solver() == "sph" ? sph::kind().make(scene, {}) : pbf::kind().make(scene, {});
 }
 
 /// A tank of 1 m by 0.8 m, 0.4 m deep, with bodies.

@@ -233,7 +233,7 @@ TEST(
         "\"sphere\", centre = [0.35, 0.7], radius = 0.05, density = 10.0, velocity = [-3.0, 0.0] }",
         "solids = [ { shape = \"box\", min = [0.93, -0.1], max = [1.1, 0.5] } ]");
     const scene::Scene scene = scene_of(text);
-    const auto solver = water::kind().make(scene);
+    const auto solver = water::kind().make(scene, {});
     const auto& state = dynamic_cast<const water::Water<2>&>(*solver).state();
     int moved = 0;
     for (int step = 0; step < 80; ++step) {

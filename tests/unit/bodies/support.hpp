@@ -18,7 +18,7 @@ inline scene::Scene scene_of(const std::string& text) {
 
 inline std::unique_ptr<Solver> solver_of(const std::string& text) {
     const scene::Scene scene = scene_of(text);
-    return scene.solver() == "mac" ? smoke::kind().make(scene) : water::kind().make(scene);
+    return scene.solver() == "mac" ? smoke::kind().make(scene, {}) : water::kind().make(scene, {});
 }
 
 /// Loops of problems too small to share are not shared while it lives, as a Simulation sees to.

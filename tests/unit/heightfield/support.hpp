@@ -27,6 +27,6 @@ inline std::string rough_water(int dim) {
                       "\"0.3*cos(4*z)\" } }\n";
 }
 
-inline std::unique_ptr<Solver> height_solver(const scene::Scene& scene) { return heightfield::kind().make(scene); }
+inline std::unique_ptr<Solver> height_solver(const scene::Scene& scene) { return heightfield::kind().make(scene, {}); }
 
 }  // namespace weir::test

@@ -91,7 +91,7 @@ TEST("water is counted where it is: above a body's flat bottom and below a flat 
             "tank.toml", sim::schemas());
     };
     const auto scene = scene_of("shape = \"box\", min = [0.25, 0.30], max = [0.75, 0.80]");
-    const auto solver = sim::kind_named(scene.solver()).make(scene);
+    const auto solver = sim::kind_named(scene.solver()).make(scene, {});
     const real energy = find_metric("budget.energy_gain")->observe(solver->fields(), scene, 0);
     const real exact = 9810 * (0.5 * 0.53 * 0.53 - 0.5 * 0.23 * 0.415);
     // an eighth of a cell in which the bottom or the surface is not told: half of it, h/16 of water at the surface's height along a metre

@@ -31,7 +31,7 @@ struct Stated final : weir::test::FakeSolver {
 /// Of a run of 1 s with frames every 0.1 s, from `begin` on.
 BalanceOfRun balance(const Integrals& integrals, const std::string& more = "", int begin = 0, const std::string& every = "0.1") {
     auto kinds = weir::test::fake_kinds();
-    kinds[0].make = [&](const weir::scene::Scene& scene) { return std::make_unique<Stated>(scene, integrals); };
+    kinds[0].make = [&](const weir::scene::Scene& scene, const weir::Partition&) { return std::make_unique<Stated>(scene, integrals); };
     const std::string text =
         "solver = \"fake\"\ndim = 2\ngrid = { cells = [8, 8], size = [1, 1] }\ntime = { end = 1 }\noutput.every = " + every + "\n" + more;
     weir::Simulation simulation(weir::scene::parse(text, "fake.toml", {kinds[0].schema}), kinds);

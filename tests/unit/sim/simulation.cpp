@@ -276,7 +276,7 @@ struct Counting : weir::test::FakeSolver {
 
 TEST("a small scene takes no more threads than it has work for, a large one all, and a number that was set is taken") {
     auto kinds = weir::test::fake_kinds();
-    kinds[0].make = [](const weir::scene::Scene& scene) { return std::make_unique<Counting>(scene); };
+    kinds[0].make = [](const weir::scene::Scene& scene, const weir::Partition&) { return std::make_unique<Counting>(scene); };
     const auto threads_of = [&](int cells) {
         const std::string text =
             "solver = \"fake\"\ndim = 2\ngrid = { cells = [" + std::to_string(cells) + ", 8], size = [1, 1] }\ntime = { end = 1 }";

@@ -27,7 +27,7 @@ Samples lattice(int domain, real cell) {
 
 void compute(ParticleField& field, const Cloud& cloud, Samples& samples) {
     samples.make_room();
-    const Extent all = extent_of(cloud);
+    const CloudExtent all = extent_of(cloud);
     field.lay(all.box, all.count, cloud.spacing, samples);
     field.compute(cloud, samples);
 }

@@ -39,7 +39,7 @@ Apart apart(const std::string& tank, const std::string& tall, real end, real dt)
     const auto build = [&](const scene::SolverKind& kind, const std::string& scheme) {
         const std::string text = "solver = \"" + kind.schema.name + "\"\ndim = 2\ntime = { end = 10.0 }\nfluid = { density = 1000.0 }\n" +
                                  tank + "\neffects.gravity.g = [0.0, -9.81]\nscheme = { " + scheme + " }\n";
-        return kind.make(scene::parse(text, "tank", {kind.schema}));
+        return kind.make(scene::parse(text, "tank", {kind.schema}), {});
     };
     const auto uniform = build(water::kind(), "transfer = \"grid\""), columns = build(tallcell::kind(), tall);
     const auto start = surface(*uniform);

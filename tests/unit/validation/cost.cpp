@@ -220,9 +220,9 @@ TEST("errors and bytes of a published study are compared with the code: what mov
 TEST("a backend that is not here leaves its row with the reason, and the study goes on; a method may have threads of its own") {
     const test::TemporaryFolder folder;
     auto kinds = test::fake_kinds();
-    kinds[0].make = [make = kinds[0].make](const scene::Scene& scene) {
+    kinds[0].make = [make = kinds[0].make](const scene::Scene& scene, const Partition& partition) {
         if (scene.integer("stall_at") == 7) throw BadInput("no OpenCL device here: install one");
-        return make(scene);
+        return make(scene, partition);
     };
     const auto study =
         add(folder.path(), head + "[[methods]]\nname = \"here\"\nthreads = 3\n[[methods]]\nname = \"away\"\nset = [\"stall_at = 7\"]\n");

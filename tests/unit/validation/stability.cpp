@@ -233,7 +233,7 @@ TEST("each watch of hard_melting sees its own number leave its bound") {
     stress.steps = 2, stress.preconditions.clear();
     const auto broke = [&](const std::string& name, real by) {
         auto kind = smoke::kind();
-        kind.make = [&, name, by](const scene::Scene& scene) { return std::make_unique<OffByOne>(scene, name, by); };
+        kind.make = [&, name, by](const scene::Scene& scene, const Partition&) { return std::make_unique<OffByOne>(scene, name, by); };
         return push(stress, 1, {kind});
     };
     EXPECT_FALSE(broke("", 0));

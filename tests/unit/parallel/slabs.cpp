@@ -3,6 +3,7 @@
 #include "parallel/load_balance.hpp"
 #include "support/test.hpp"
 
+#include <numeric>
 #include <set>
 
 namespace weir {
@@ -77,18 +78,56 @@ TEST("what all ranks together send to one are its ghost planes, each once, from 
 TEST("one rank owns everything, and an empty cut changes no loop") {
     EXPECT_FALSE(communicator().several());
     const Partition none = equal_partition(10, communicator().ranks());
-    const OwnPlanes mine(none);
-    EXPECT_FALSE(is_distributed());
+    EXPECT_EQ(slab_of(none), nullptr);
+    const Extent<2> extent(Index<2>{{3, 10}}, OwnPlanes(slab_of(none)));
+    EXPECT_FALSE(extent.own.distributed());
+    EXPECT_EQ(extent.own, OwnPlanes());
     int visited = 0;
     const int before = set_threads(1);
-    for_each_cell(Index<2>{{3, 10}}, [&](const Index<2>&) { ++visited; });
+    for_each_cell(extent, [&](const Index<2>&) { ++visited; });
     set_threads(before);
     EXPECT_EQ(visited, 30);
-    Grid<real, 2> q(Index<2>{{3, 10}}, 2);
+    Grid<real, 2> q(extent, 2);
     refresh(q, true, 3);
     gather(q);
     EXPECT_EQ(sum_over(q.extent(), [&](const Index<2>& I) { return q(I); }), 60);
     EXPECT_EQ(communicator().traffic().messages, 0);
+}
+
+/// Equal slabs are one object: an extent tells by a pointer whether two grids share a partition.
+TEST("a slab is this rank's part of a partition; the planes beyond the ends of the axis belong to the first and to the last rank") {
+    const Partition cut = equal_partition(24, 3);
+    const auto planes_of_rank = [&](int rank) {
+        set_communicator(std::make_unique<Communicator>(rank, 3));
+        const Slab* slab = slab_of(cut, 2);
+        EXPECT_EQ(slab, slab_of(equal_partition(24, 3), 2));
+        EXPECT_NE(slab, slab_of(cut, 3));
+        EXPECT_NE(slab, slab_of(cut, 2, true));
+        EXPECT_EQ(slab->rank(), rank);
+        const OwnPlanes own(slab);
+        set_communicator(nullptr);
+        return own;
+    };
+    const OwnPlanes first = planes_of_rank(0), second = planes_of_rank(1), last = planes_of_rank(2);
+    EXPECT_TRUE(first.contains(-1) && first.contains(7) && !first.contains(8));
+    EXPECT_TRUE(!second.contains(7) && second.contains(8) && second.contains(15) && !second.contains(16));
+    EXPECT_TRUE(!last.contains(15) && last.contains(16) && last.contains(24));
+    EXPECT_EQ(second.lower(0), 8);
+    EXPECT_EQ(second.upper(24), 16);
+    EXPECT_EQ(second.lower(10), 10);
+    EXPECT_EQ(second.upper(12), 12);
+    EXPECT_EQ(second.wider(3).lower(0), 5);
+    EXPECT_EQ(second.wider(3).upper(24), 19);
+    EXPECT_EQ(first.wider(3).lower(-4), -4);
+    EXPECT_EQ(first.wider(3).upper(24), 11);
+    EXPECT_EQ(last.wider(3).lower(0), 13);
+    EXPECT_EQ(last.wider(3).upper(26), 26);
+    const Index<2> cells{{5, 24}};
+    const Extent<2> extent(cells, second), faces = extent + e<2>(1);
+    EXPECT_EQ(faces.own, second);
+    EXPECT_EQ(faces[1], 25);
+    EXPECT_EQ((extent - e<2>(0)).own, second);
+    EXPECT_FALSE(replicated<2>(extent).own.distributed());
 }
 
 /// Two ranks of which the other answers with a plane's own number, as a rank whose planes hold those would.
@@ -103,20 +142,40 @@ public:
 
 TEST("in parallel a loop does its own planes, and a sum adds those of all ranks in the order of the planes") {
     set_communicator(std::make_unique<Echo>());
-    {
-        const Partition cut = equal_partition(16, 2);
-        const OwnPlanes mine(cut);
-        std::vector<int> seen(17, 0);
-        for_each_plane(0, 17, [&](int plane) { seen[static_cast<std::size_t>(plane)] = 1; });  // 17: faces
-        for (int plane = 0; plane < 17; ++plane) EXPECT_EQ(seen[static_cast<std::size_t>(plane)], plane >= 8 ? 1 : 0);
-        EXPECT_EQ(plane_sum(16, [](int plane) { return real(plane); }), 120);
-        EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 7);  // of the other's, which echo their numbers
-        const AllPlanes all;
-        EXPECT_FALSE(is_distributed());
-        EXPECT_EQ(plane_max(16, [](int plane) { return -real(plane); }), 0);
-    }
+    const OwnPlanes own(slab_of(equal_partition(16, 2)));
+    EXPECT_TRUE(own.distributed());
+    std::vector<int> seen(17, 0);
+    for_each_plane(own, 0, 17, [&](int plane) { seen[static_cast<std::size_t>(plane)] = 1; });  // 17: faces
+    for (int plane = 0; plane < 17; ++plane) EXPECT_EQ(seen[static_cast<std::size_t>(plane)], plane >= 8 ? 1 : 0);
+    EXPECT_EQ(plane_sum(own, 16, [](int plane) { return real(plane); }), 120);
+    EXPECT_EQ(plane_max(own, 16, [](int plane) { return -real(plane); }), 7);  // of the other's, which echo their numbers
+    const OwnPlanes all;
+    EXPECT_FALSE(all.distributed());
+    EXPECT_EQ(plane_max(all, 16, [](int plane) { return -real(plane); }), 0);
     set_communicator(nullptr);
-    EXPECT_FALSE(is_distributed());
+}
+
+TEST("loops and sums over a grid follow its extent; over a replicated box they cover all of it on every rank") {
+    set_communicator(std::make_unique<Echo>());
+    const Index<2> cells{{3, 16}};
+    const Grid<real, 2> q(Extent<2>(cells, OwnPlanes(slab_of(equal_partition(16, 2)))), 1);
+    EXPECT_TRUE(q.own().distributed() && !q.store().windowed());
+    const auto one = [](const Index<2>&) { return 1.0; };
+    const auto visited = [](const Index<2>& lo, const Extent<2>& hi) {
+        std::vector<int> cells_in_plane(32, 0);
+        for_each_in(lo, hi, [&](const Index<2>& I) { ++cells_in_plane[static_cast<std::size_t>(I[1])]; });
+        return std::accumulate(cells_in_plane.begin(), cells_in_plane.end(), 0);
+    };
+    EXPECT_EQ(sum_over(q.extent(), one), 28 + 8 * 3);  // 0 + 1 + ... + 7, which the other rank echoes
+    EXPECT_EQ(sum_over(replicated(cells), one), 48);
+    EXPECT_EQ(visited({}, q.extent()), 24);
+    EXPECT_EQ(visited({}, q.extent() + e<2>(1)), 27);
+    EXPECT_EQ(visited({}, q.extent().wider(2)), 30);
+    EXPECT_EQ(visited({}, replicated(cells)), 48);
+    EXPECT_EQ(visited(Index<2>{{1, 10}}, q.extent()), 12);
+    const Grid<real, 2> copy = q;
+    EXPECT_EQ(copy.own(), q.own());
+    set_communicator(nullptr);
 }
 
 }  // namespace

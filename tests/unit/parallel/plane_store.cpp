@@ -28,7 +28,8 @@ public:
     ~ThreeRanks() { set_communicator(nullptr); }
     ThreeRanks(const ThreeRanks&) = delete;
     ThreeRanks& operator=(const ThreeRanks&) = delete;
-    const Partition cut = equal_partition(24, 3);
+    /// Arrays on this rank's planes; with ghost planes, of distributed storage.
+    OwnPlanes own(int ghost_planes = 0) const { return OwnPlanes(slab_of(equal_partition(24, 3), ghost_planes)); }
 };
 
 /// Does f die of looking where there is no memory?
@@ -75,13 +76,12 @@ TEST("a rank holds its planes and that number of ghost planes, around a ring too
 
 TEST(
     "near a rank's own planes are those beside them: around a ring the last too, and there face n is face 0; where one does all, all are") {
-    EXPECT_TRUE(planes_near(24, 2, false).empty());
     const ThreeRanks three;
-    EXPECT_TRUE(planes_near(24, 2, false).empty());  // no planes are distributed yet
-    const OwnPlanes mine(three.cut);
-    const auto list = [](int count, int ghost_planes, bool ring) {
+    EXPECT_TRUE(planes_near(nullptr, 24, 2, false).empty());
+    const Slab* const slab = three.own().slab;
+    const auto list = [slab](int count, int ghost_planes, bool ring) {
         std::vector<int> planes;
-        const auto near = planes_near(count, ghost_planes, ring);
+        const auto near = planes_near(slab, count, ghost_planes, ring);
         EXPECT_EQ(static_cast<int>(near.size()), count);
         for (int k = 0; k < count; ++k)
             if (near[static_cast<std::size_t>(k)] != 0) planes.push_back(k);
@@ -95,14 +95,14 @@ TEST(
     EXPECT_EQ(list(24, 7, true).back(), 22);
     EXPECT_EQ(list(24, 8, true), list(24, 100, true));
     EXPECT_EQ(list(25, 7, true).back(), 22);
-    const auto faces = planes_near(25, 9, true);  // 24, which is 0
+    const auto faces = planes_near(slab, 25, 9, true);  // 24, which is 0
     EXPECT_TRUE(faces[24] != 0 && faces[0] != 0);
 }
 
 TEST("a copy of as many planes takes no other memory: what is done in every step maps none") {
     const ThreeRanks three;
-    const OwnPlanes mine(three.cut, 1, 2);
-    Grid<real, 2> from(Index<2>{{512, 24}}, 7), to(Index<2>{{512, 24}}, 3);
+    const Extent<2> extent(Index<2>{{512, 24}}, three.own(2));
+    Grid<real, 2> from(extent, 7), to(extent, 3);
     const real* const place = to.data();
     to.store().open(4, false);
     to(Index<2>{{0, 4}}) = 5;
@@ -115,12 +115,11 @@ TEST("a copy of as many planes takes no other memory: what is done in every step
 
 TEST("behind the planes of others there is no memory: an access to them faults; those that are opened keep what stood there") {
     const ThreeRanks three;
-    const Index<3> extent{{64, 32, 24}};
+    const Extent<3> extent(Index<3>{{64, 32, 24}}, three.own(2));
     const std::size_t plane = 64 * 32 * sizeof(real);
     {
-        const OwnPlanes mine(three.cut, 1, 2);
         Grid<real, 3> q(extent, 7);
-        EXPECT_EQ(q.size(), product(extent));
+        EXPECT_EQ(q.size(), product<3>(extent));
         EXPECT_EQ(q.bytes(), 13 * plane);
         EXPECT_EQ(resident(q), 13 * plane);  // planes are whole pages here
         EXPECT_EQ(q(Index<3>{{0, 0, 6}}), 7);
@@ -150,15 +149,14 @@ TEST("behind the planes of others there is no memory: an access to them faults; 
 
 TEST("an array that has not the planes of the cut is whole, as all are without distributed storage") {
     const ThreeRanks three;
-    {
-        const OwnPlanes mine(three.cut, 1, 2);
-        EXPECT_FALSE((Grid<real, 2>(Index<2>{{8, 23}}).store().windowed()));
-        EXPECT_TRUE((Grid<real, 2>(Index<2>{{8, 25}}).store().windowed()));  // faces
-        const AllPlanes all;
-        EXPECT_FALSE((Grid<real, 2>(Index<2>{{8, 24}}).store().windowed()));
-    }
-    const OwnPlanes mine(three.cut);
-    EXPECT_FALSE((Grid<real, 2>(Index<2>{{8, 24}}).store().windowed()));
+    const auto windowed = [](int planes, const OwnPlanes& own) {
+        return Grid<real, 2>(Extent<2>(Index<2>{{8, planes}}, own)).store().windowed();
+    };
+    EXPECT_TRUE(windowed(24, three.own(2)));
+    EXPECT_TRUE(windowed(25, three.own(2)));  // faces
+    EXPECT_FALSE(windowed(23, three.own(2)));
+    EXPECT_FALSE(windowed(24, three.own()));
+    EXPECT_FALSE(windowed(24, {}));
 }
 
 }  // namespace
