@@ -37,8 +37,8 @@ void refuse_what_columns_cannot(const scene::Scene& scene, const State& state) {
 
 }  // namespace
 
-Columns::Columns(const scene::Scene& scene)
-    : state_(scene),
+Columns::Columns(const scene::Scene& scene, const Partition& partition)
+    : state_(scene, partition),
       surface_(state_.plane.extent()),
       rate_(state_.plane.extent()),
       periodic_x_(state_.sides(0, 0).kind == SideKind::periodic),

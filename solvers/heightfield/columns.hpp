@@ -10,7 +10,7 @@ namespace weir::heightfield {
 class Columns final : public Solver {
 public:
     static constexpr int checked_every = 16;  // steps: a check of all columns costs as much as half a step
-    explicit Columns(const scene::Scene& scene);
+    explicit Columns(const scene::Scene& scene, const Partition& partition = {});
     StepReport step(real dt) override;
     real advised_dt() const override;
     StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }

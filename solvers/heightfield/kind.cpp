@@ -142,12 +142,12 @@ Key floats_key() {
                  .variants_from = &scene::motions}}};
 }
 
-std::unique_ptr<Solver> make(const scene::Scene& scene, const Partition&) {
-    if (scene.text("scheme.model") == "columns") return std::make_unique<Columns>(scene);
+std::unique_ptr<Solver> make(const scene::Scene& scene, const Partition& partition) {
+    if (scene.text("scheme.model") == "columns") return std::make_unique<Columns>(scene, partition);
     if (!scene.root().tables("floats").empty())
         scene.refuse("floats", "the model \"shallow_water\" has no floating objects",
                      "use scheme.model = \"columns\"; solids stand on the bed");
-    return std::make_unique<ShallowWater>(scene);
+    return std::make_unique<ShallowWater>(scene, partition);
 }
 
 /// Rejects keys of a scene that are not supported in parallel.

@@ -6,13 +6,9 @@ namespace weir::heightfield {
 
 bool holds_own_rows(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
-Plane Plane::of_rank(const scene::Scene& scene) {
-    Plane plane(scene);
-    if (communicator().builds_serial()) return plane;
-    const Partition rows = partition_of_rows(plane, communicator().ranks());
+Plane::Plane(const scene::Scene& scene, const Partition& rows) : Plane(scene) {
     const bool periodic = Sides(scene)(1, 0).kind == SideKind::periodic;
-    plane.own = OwnPlanes(slab_of(rows, holds_own_rows(scene, rows) ? rows_beside : 0, periodic));
-    return plane;
+    own = OwnPlanes(slab_of(rows, holds_own_rows(scene, rows) ? rows_beside : 0, periodic));
 }
 
 std::vector<PlaneRange> rows_near(const Plane& plane) {

@@ -30,7 +30,7 @@ struct Plane {
         if (dim == 3) nz = static_cast<int>(n[2]), z0 = origin[2], dz = size[2] / n[2];
     }
     /// The plane with this rank's rows and their storage.
-    static Plane of_rank(const scene::Scene& scene);
+    Plane(const scene::Scene& scene, const Partition& rows);
     std::size_t count() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz); }
     Extent<2> extent() const { return {{{nx, nz}}, own}; }
     std::size_t at(int i, int k) const { return static_cast<std::size_t>(k) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i); }

@@ -16,8 +16,8 @@ constexpr real most_cfl = 0.5;
 
 }  // namespace
 
-ShallowWater::ShallowWater(const scene::Scene& scene)
-    : state_(scene),
+ShallowWater::ShallowWater(const scene::Scene& scene, const Partition& partition)
+    : state_(scene, partition),
       rows_(state_.plane, limiter_named(scene.text("scheme.limiter"))),
       reports_(static_cast<std::size_t>(state_.plane.nz)),
       h1_(state_.h.extent()),

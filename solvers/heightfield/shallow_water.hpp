@@ -9,7 +9,7 @@ namespace weir::heightfield {
 
 class ShallowWater final : public Solver {
 public:
-    explicit ShallowWater(const scene::Scene& scene);
+    explicit ShallowWater(const scene::Scene& scene, const Partition& partition = {});
     StepReport step(real dt) override;
     real advised_dt() const override;
     StepLimit stable_dt() const override;

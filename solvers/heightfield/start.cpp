@@ -259,8 +259,8 @@ void start(const Scene& scene, State& state) {
     give_velocity(scene, state);
 }
 
-State::State(const Scene& scene)
-    : plane(Plane::of_rank(scene)), sides(scene), rho(scene.number("fluid.density")), dry(scene.number("scheme.dry_depth")) {
+State::State(const Scene& scene, const Partition& partition)
+    : plane(scene, partition), sides(scene), rho(scene.number("fluid.density")), dry(scene.number("scheme.dry_depth")) {
     if (plane.nx < 2 || (plane.dim == 3 && plane.nz < 2))
         scene.refuse("grid.cells", "a height field has at least 2 columns along each axis");
     constexpr real nothing = 1e-9;  // [m/s^2]: no noticeable motion in any run

@@ -18,7 +18,7 @@ struct State {
     real time = 0;          // at the start of the step [s]
     real net_inflow = 0;    // volume that came in through sides and as rain since the start, minus outflow [m^3]
 
-    explicit State(const scene::Scene& scene);
+    explicit State(const scene::Scene& scene, const Partition& partition = {});
     std::size_t bytes() const { return h.bytes() + qx.bytes() + qz.bytes() + bed.bytes(); }
 };
 

@@ -52,26 +52,4 @@ inline std::int64_t largest_share(std::span<const std::int64_t> work, const Part
     return most;
 }
 
-namespace detail {
-inline const Partition* scope_cut = nullptr;
-}
-
-/// Scope in which new solvers use this partition. The caller knows the work of the planes; all ranks must pass the same partition.
-class PartitionScope {
-public:
-    explicit PartitionScope(const Partition& cut) : before_(detail::scope_cut) { detail::scope_cut = &cut; }
-    ~PartitionScope() { detail::scope_cut = before_; }
-    PartitionScope(const PartitionScope&) = delete;
-    PartitionScope& operator=(const PartitionScope&) = delete;
-
-private:
-    const Partition* before_;
-};
-
-/// The partition of the scope above; without one, equal numbers of planes for all ranks.
-inline Partition partition_in_scope(int planes) {
-    if (detail::scope_cut && !detail::scope_cut->empty() && detail::scope_cut->planes() == planes) return *detail::scope_cut;
-    return equal_partition(planes, communicator().ranks());
-}
-
 }  // namespace weir

@@ -70,7 +70,7 @@ template <int D>
 struct Extent : Index<D> {
     OwnPlanes own{};
     Extent() : Index<D>{} {}
-    Extent(const Index<D>& index) : Index<D>(index) {}
+    explicit Extent(const Index<D>& index) : Index<D>(index) {}
     Extent(const Index<D>& index, const OwnPlanes& planes) : Index<D>(index), own(planes) {}
     Extent wider(int planes) const { return {*this, own.wider(planes)}; }
 };

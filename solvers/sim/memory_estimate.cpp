@@ -171,25 +171,22 @@ double particles_in(const FieldSet& fields) {
     return 0;
 }
 
-class WholeGrids {
+/// Scope in which particles belong to this rank alone.
+class BuildsSerial {
 public:
-    WholeGrids() : before_(communicator().holds_whole()) { communicator().hold_whole(true), communicator().build_serial(true); }
-    ~WholeGrids() { communicator().hold_whole(before_), communicator().build_serial(false); }
-    WholeGrids(const WholeGrids&) = delete;
-    WholeGrids& operator=(const WholeGrids&) = delete;
-
-private:
-    bool before_;
+    BuildsSerial() { communicator().build_serial(true); }
+    ~BuildsSerial() { communicator().build_serial(false); }
+    BuildsSerial(const BuildsSerial&) = delete;
+    BuildsSerial& operator=(const BuildsSerial&) = delete;
 };
 
 std::unique_ptr<Solver> solver_of(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
-    const scene::SolverKind& kind = kind_named(scene.solver(), kinds);
-    return kind.make(scene, equal_shares(scene, communicator().ranks(), kind));
+    return kind_named(scene.solver(), kinds).make(scene, {});
 }
 
 /// Builds a scene and takes one step of it, as long as its first.
 Held hold(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds) {
-    const WholeGrids whole;  // in parallel too: what one process would allocate
+    const BuildsSerial serial;  // in parallel too: what one process would allocate
     Held held{.cells = scene.root().numbers("grid.cells"), .solver = solver_of(scene, kinds)};
     Solver& solver = *held.solver;
     held.fields = static_cast<const Solver&>(solver).fields();

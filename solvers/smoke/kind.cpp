@@ -57,7 +57,7 @@ scene::SolverKind kind() {
     schema.effects = schemas_of(effect_kinds());
     schema.effects.push_back(geometry::brush_schema());
     return {schema,
-            [](const scene::Scene& scene, const Partition&) { return make_without_surface<FlowSolver>(scene); },
+            [](const scene::Scene& scene, const Partition& partition) { return make_without_surface<FlowSolver>(scene, partition); },
             {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
             {.check = check_parallel,
              .replicated_work = mac::replicated_pressure,

@@ -155,9 +155,9 @@ bool lists(const scene::Scene& scene, const std::string& field) {
 }  // namespace
 
 template <int D>
-FlowSolver<D>::FlowSolver(const scene::Scene& scene)
+FlowSolver<D>::FlowSolver(const scene::Scene& scene, const Partition& partition)
     : effects_(make_effects<D>(effect_kinds(), scene, all_stages)),
-      state_(scene, field_plan(effects_, scene), slab_of<D>(scene, planes_beside)),
+      state_(scene, field_plan(effects_, scene), slab_of<D>(scene, partition, planes_beside)),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
       walls_(solids_.any() && scene.effect("viscosity") ? std::make_unique<SolidWalls<D>>() : nullptr),

@@ -34,7 +34,7 @@ scene::SolverKind kind();
 template <int D>
 class FlowSolver : public Solver {
 public:
-    explicit FlowSolver(const scene::Scene& scene);
+    explicit FlowSolver(const scene::Scene& scene, const Partition& partition = {});
 
     StepReport step(real dt) override;
     real advised_dt() const override;

@@ -22,8 +22,8 @@ const std::vector<ManufacturedProblem>& manufactured_problems() {
 template <int D>
 PoissonProblemSolver<D>::PoissonProblemSolver(const scene::Scene& scene) {
     const Lattice<D> lattice(scene);
-    lattice_ = MacVelocity<D>(lattice.cells, lattice.h, lattice.origin);
-    p_ = rhs_ = Grid<real, D>(lattice.cells);
+    lattice_ = MacVelocity<D>(replicated(lattice.cells), lattice.h, lattice.origin);
+    p_ = rhs_ = Grid<real, D>(replicated(lattice.cells));
     const PoissonChoice choice(scene.root().table("scheme.poisson"));
     solver_ = poisson::make_solver<D>(choice.method, choice.options);
     const ManufacturedProblem* problem = nullptr;
@@ -32,13 +32,13 @@ PoissonProblemSolver<D>::PoissonProblemSolver(const scene::Scene& scene) {
     if (problem->dim != D)
         scene.refuse("problem", std::string("problem ") + problem->name + " needs dim = " + std::to_string(problem->dim));
 
-    matrix_.cells = Grid<poisson::Cell, D>(lattice.cells, poisson::Cell::fluid);
+    matrix_.cells = Grid<poisson::Cell, D>(replicated(lattice.cells), poisson::Cell::fluid);
     for (int a = 0; a < D; ++a) {
         const real ratio = lattice.h[0] / lattice.h[a];
         matrix_.axis_weight[a] = ratio * ratio;
         if (!problem->dirichlet) continue;
         auto& weight = matrix_.weight[static_cast<std::size_t>(a)];
-        weight = Grid<real, D>(lattice.cells + e<D>(a), 1);
+        weight = Grid<real, D>(replicated(lattice.cells + e<D>(a)), 1);
         for_each_cell(weight.extent(), [&](const Index<D>& I) {
             if (I[a] == 0 || I[a] == lattice.cells[a]) weight(I) = 2;  // p = 0 at half a cell from the centre
         });

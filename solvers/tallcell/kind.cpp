@@ -93,7 +93,7 @@ scene::SolverKind kind() {
     schema.without = {"sides.*.temperature", "sides.*.smoke", "sides.*.profile", "emitters", "initial.temperature", "initial.smoke"};
     return {
         schema,
-        [](const scene::Scene& scene, const Partition&) { return mac::make<TallCells>(scene); },
+        [](const scene::Scene& scene, const Partition& partition) { return mac::make<TallCells>(scene, partition); },
         {{"velocity", "pressure", "level_set", "cell_height"},
          {"level set", "remesh", "advect", "walls", "project", "extrapolate"},
          "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ninitial.velocity = \"random\""},

@@ -38,7 +38,7 @@ struct TallOptions {
 template <int D>
 class TallCells final : public Solver {
 public:
-    explicit TallCells(const scene::Scene& scene);
+    explicit TallCells(const scene::Scene& scene, const Partition& partition = {});
 
     StepReport step(real dt) override;
     real advised_dt() const override;

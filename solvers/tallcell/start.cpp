@@ -13,8 +13,7 @@ namespace {
 
 /// Depth of the velocity's halo: the motion of a step plus the interpolation stencil.
 template <int D>
-const Slab* slab_of_columns(const scene::Scene& scene, real cfl) {
-    const Partition cut = partition_of_columns(scene, communicator().ranks());
+const Slab* slab_of_columns(const scene::Scene& scene, const Partition& cut, real cfl) {
     const int ghost_planes = static_cast<int>(std::ceil(cfl)) + 3;
     return slab_of(cut, holds_own_planes(scene, cut) ? ghost_planes : 0, geometry::Sides<D>(scene).periodic(D - 1));
 }
@@ -22,9 +21,9 @@ const Slab* slab_of_columns(const scene::Scene& scene, real cfl) {
 }  // namespace
 
 template <int D>
-TallCells<D>::TallCells(const scene::Scene& scene)
+TallCells<D>::TallCells(const scene::Scene& scene, const Partition& partition)
     : options_(scene),
-      state_(scene, FieldPlan{}, slab_of_columns<D>(scene, options_.cfl)),
+      state_(scene, FieldPlan{}, slab_of_columns<D>(scene, partition, options_.cfl)),
       frame_(state_.u, state_.sides),
       solids_(solids_of<D>(scene), state_),
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
@@ -93,7 +92,7 @@ void TallCells<D>::fill_with_liquid(const scene::Scene& scene) {
     passes_.reset();
 }
 
-template TallCells<2>::TallCells(const scene::Scene&);
-template TallCells<3>::TallCells(const scene::Scene&);
+template TallCells<2>::TallCells(const scene::Scene&, const Partition&);
+template TallCells<3>::TallCells(const scene::Scene&, const Partition&);
 
 }  // namespace weir::tallcell

@@ -93,7 +93,7 @@ scene::SolverKind kind() {
     schema.effects = effect_schemas();
     schema.without = {"sides.*.smoke", "sides.*.profile", "emitters.temperature", "emitters.smoke", "initial.smoke"};
     return {schema,
-            [](const scene::Scene& scene, const Partition&) { return mac::make<Water>(scene); },
+            [](const scene::Scene& scene, const Partition& partition) { return mac::make<Water>(scene, partition); },
             {{"velocity", "pressure", "level_set", "position", "velocity"},
              {"sort markers", "redistribute markers", "move surface", "level set", "markers to faces", "walls", "project", "extrapolate",
               "faces to markers"},

@@ -8,7 +8,7 @@ namespace weir::water {
 using poisson::Cell;
 
 template <int D>
-AndersonMixing<D>::AndersonMixing(const Index<D>& cells) : last_p_(cells), last_residual_(cells) {
+AndersonMixing<D>::AndersonMixing(const Extent<D>& cells) : last_p_(cells), last_residual_(cells) {
     for (Change& change : changes_) change = {Grid<real, D>(cells), Grid<real, D>(cells)};
 }
 

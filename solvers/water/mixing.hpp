@@ -12,7 +12,7 @@ class AndersonMixing {
 public:
     static constexpr int depth = 5;  // number of stored changes
     AndersonMixing() = default;
-    explicit AndersonMixing(const Index<D>& cells);
+    explicit AndersonMixing(const Extent<D>& cells);
     void restart() { count_ = 0, any_ = false; }
     /// Replaces p by the next iterate, given the residual F(p) − p; counted in liquid cells only.
     void next(Grid<real, D>& p, const Grid<real, D>& residual, const Grid<poisson::Cell, D>& cells);

@@ -75,7 +75,7 @@ struct StepOfFriction {
 template <int D>
 class Water final : public Solver {
 public:
-    explicit Water(const scene::Scene& scene);
+    explicit Water(const scene::Scene& scene, const Partition& partition = {});
 
     StepReport step(real dt) override;
     real advised_dt() const override;

@@ -21,9 +21,9 @@ bool all_stick(const geometry::Solids<D>& solids) {
 }  // namespace
 
 template <int D>
-Water<D>::Water(const scene::Scene& scene)
+Water<D>::Water(const scene::Scene& scene, const Partition& partition)
     : options_(scene),
-      state_(scene, FieldPlan{}, mac::slab_of<D>(scene, static_cast<int>(std::ceil(options_.cfl)) + 3)),
+      state_(scene, FieldPlan{}, mac::slab_of<D>(scene, partition, static_cast<int>(std::ceil(options_.cfl)) + 3)),
       frame_(state_.u, state_.sides),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
@@ -180,7 +180,7 @@ void Water<D>::seed_markers() {
     markers_whole_ = false;
 }
 
-template Water<2>::Water(const scene::Scene&);
-template Water<3>::Water(const scene::Scene&);
+template Water<2>::Water(const scene::Scene&, const Partition&);
+template Water<3>::Water(const scene::Scene&, const Partition&);
 
 }  // namespace weir::water

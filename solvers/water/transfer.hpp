@@ -27,7 +27,7 @@ struct FaceSum {
 template <int D>
 class FaceSums {
 public:
-    explicit FaceSums(const Index<D>& cells) {
+    explicit FaceSums(const Extent<D>& cells) {
         for (int a = 0; a < D; ++a) sum[static_cast<std::size_t>(a)] = Grid<FaceSum, D>(cells + e<D>(a));
     }
     FaceSums() = default;

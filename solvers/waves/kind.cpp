@@ -224,7 +224,7 @@ scene::SolverKind kind() {
         "procedural waves are formulas: they take no steps, meet no walls, bodies or sources, and do not overturn; \"mac_water\", \"sph\" "
         "and \"pbf\" are liquids that do";
     return {schema,
-            [](const scene::Scene& scene, const Partition&) { return std::make_unique<Waves>(scene); },
+            [](const scene::Scene& scene, const Partition& partition) { return std::make_unique<Waves>(scene, partition); },
             {{"level_set", "velocity", "position", "jacobian"},
              {"surface", "water"},
              "waves = { model = \"gerstner\", trains = [ { amplitude = 0.02, wavelength = 0.5 } ] }"},

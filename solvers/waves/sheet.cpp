@@ -20,12 +20,8 @@ Partition partition_of_box(const Box& box, int ranks) {
 
 bool holds_own_planes(const scene::Scene&, const Partition& cut) { return !cut.empty() && !communicator().holds_whole(); }
 
-Box Box::of_rank(const scene::Scene& scene) {
-    Box box(scene);
-    if (communicator().builds_serial()) return box;
-    const Partition planes = partition_of_box(box, communicator().ranks());
-    box.own = OwnPlanes(slab_of(planes, holds_own_planes(scene, planes) ? 1 : 0));
-    return box;
+Box::Box(const scene::Scene& scene, const Partition& planes) : Box(scene) {
+    own = OwnPlanes(slab_of(planes, holds_own_planes(scene, planes) ? 1 : 0));
 }
 
 Sheet::Sheet(const Box& box, const Wanted& wanted) : height(box.of_sheet()) {

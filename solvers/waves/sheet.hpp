@@ -26,10 +26,10 @@ struct Box {
     int dim = 2;
     std::array<int, 3> cells{1, 1, 1};
     Vec<3> origin{}, spacing{};
-    OwnPlanes own{};  // rows of the sheet (z), in 2D layers of cells (y); all of them unless the box is of_rank
+    OwnPlanes own{};  // rows of the sheet (z), in 2D layers of cells (y); all of them without a partition
     explicit Box(const scene::Scene& scene);
     /// The box with this rank's planes and their storage.
-    static Box of_rank(const scene::Scene& scene);
+    Box(const scene::Scene& scene, const Partition& planes);
     int nx() const { return cells[0]; }
     int ny() const { return cells[1]; }
     int nz() const { return cells[2]; }

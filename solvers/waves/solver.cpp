@@ -9,8 +9,8 @@
 
 namespace weir::waves {
 
-Waves::Waves(const scene::Scene& scene)
-    : box_(Box::of_rank(scene)),
+Waves::Waves(const scene::Scene& scene, const Partition& partition)
+    : box_(scene, partition),
       model_(make_model(scene, box_)),
       level_(model_->level() ? *model_->level() : mean_level(scene, box_)),
       density_(scene.number("fluid.density")),

@@ -13,7 +13,7 @@ namespace weir::waves {
 
 class Waves final : public Solver {
 public:
-    explicit Waves(const scene::Scene& scene);
+    explicit Waves(const scene::Scene& scene, const Partition& partition = {});
 
     StepReport step(real dt) override;
     /// Steps have no limit: the whole scene may be one step.

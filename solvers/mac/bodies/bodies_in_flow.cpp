@@ -36,7 +36,7 @@ BodiesInFlow<D>::BodiesInFlow(const scene::Scene& scene)
     const Lattice<D> lattice(scene);
     h_ = lattice.h, h2_ = h_[0] * h_[0], cell_ = 1;
     for (int a = 0; a < D; ++a) cell_ *= h_[a];
-    phi_ = Grid<real, D>(lattice.cells);
+    phi_ = Grid<real, D>(replicated(lattice.cells));
     added_.resize(bodies_.count());
     masses_.resize(bodies_.count());
     free_.resize(n * bodies_.count());

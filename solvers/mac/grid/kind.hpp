@@ -9,20 +9,20 @@
 
 namespace weir::mac {
 
-/// Constructs the solver S of the scene's dimension.
-template <template <int> class S>
-std::unique_ptr<Solver> make(const scene::Scene& scene) {
-    if (scene.dim() == 2) return std::make_unique<S<2>>(scene);
-    return std::make_unique<S<3>>(scene);
+/// Constructs the solver S of the scene's dimension; `more`: further arguments of its constructor, such as the partition.
+template <template <int> class S, class... More>
+std::unique_ptr<Solver> make(const scene::Scene& scene, const More&... more) {
+    if (scene.dim() == 2) return std::make_unique<S<2>>(scene, more...);
+    return std::make_unique<S<3>>(scene, more...);
 }
 
 /// The same for solvers without a free surface; they reject liquid in a part of the domain.
-template <template <int> class S>
-std::unique_ptr<Solver> make_without_surface(const scene::Scene& scene) {
+template <template <int> class S, class... More>
+std::unique_ptr<Solver> make_without_surface(const scene::Scene& scene, const More&... more) {
     if (!scene.root().tables("liquid").empty())
         scene.refuse("liquid", "solver \"" + scene.solver() + "\" has no free surface and does not support liquid",
                      "solver \"mac_water\" has one");
-    return make<S>(scene);
+    return make<S>(scene, more...);
 }
 
 inline scene::Key scheme_key(std::vector<scene::Key> keys) {

@@ -42,12 +42,11 @@ scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Part
 }
 
 template <int D>
-const Slab* slab_of(const scene::Scene& scene, int ghost_planes) {
-    const Partition cut = partition_in_scope(scene.index<D>("grid.cells")[D - 1]);
-    return weir::slab_of(cut, holds_own_planes(scene, cut) ? ghost_planes : 0, geometry::Sides<D>(scene).periodic(D - 1));
+const Slab* slab_of(const scene::Scene& scene, const Partition& partition, int ghost_planes) {
+    return weir::slab_of(partition, holds_own_planes(scene, partition) ? ghost_planes : 0, geometry::Sides<D>(scene).periodic(D - 1));
 }
 
-template const Slab* slab_of<2>(const scene::Scene&, int);
-template const Slab* slab_of<3>(const scene::Scene&, int);
+template const Slab* slab_of<2>(const scene::Scene&, const Partition&, int);
+template const Slab* slab_of<3>(const scene::Scene&, const Partition&, int);
 
 }  // namespace weir::mac

@@ -18,6 +18,6 @@ bool could_hold_own_planes(const scene::Scene& scene, const Partition& cut);
 scene::ReplicatedWorks replicated_pressure(const scene::Scene& scene, const Partition& cut);
 /// This rank's planes of the scene's grid, with `ghost_planes` ghost planes or, where whole fields are read on all ranks, memory for all.
 template <int D>
-const Slab* slab_of(const scene::Scene& scene, int ghost_planes);
+const Slab* slab_of(const scene::Scene& scene, const Partition& partition, int ghost_planes);
 
 }  // namespace weir::mac
