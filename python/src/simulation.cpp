@@ -69,7 +69,7 @@ py::list fields(const StatePtr& state) {
 
 py::dict integrals(const StatePtr& state) {
     py::dict all;
-    for (const auto& i : state->simulation.solver().integrals()) all[py::str(i.name)] = i.value;
+    for (const auto& i : state->simulation.integrals()) all[py::str(i.name)] = i.value;
     return all;
 }
 

@@ -1,8 +1,10 @@
-// Threads: one static division of a range, and reductions whose order does not depend on the number of threads.
+// Threads: one static division of a range, and reductions whose result does not depend on the number of threads: sums are exact.
 #pragma once
+#include "core/exact_sum.hpp"
 #include "core/types.hpp"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <omp.h>
@@ -38,14 +40,8 @@ void parallel_for(int begin, int end, F&& f) {
 }
 
 namespace detail {
-/// Scratch of the calling thread for ordered reductions: grows, never shrinks, so that later steps allocate nothing.
+/// Scratch of the calling thread for the terms of reductions: grows, never shrinks, so that later steps allocate nothing.
 std::vector<real>& reduction_scratch(std::size_t count);
-
-inline real sum_in_order(const std::vector<real>& part, int count) {
-    real sum = 0;
-    for (int i = 0; i < count; ++i) sum += part[static_cast<std::size_t>(i)];
-    return sum;
-}
 
 /// NaN if any is NaN.
 inline real largest_of(const std::vector<real>& part, int count) {
@@ -59,17 +55,19 @@ inline real largest_of(const std::vector<real>& part, int count) {
 }
 }  // namespace detail
 
-/// f(0) + f(1) + ... + f(count - 1), added in that order.
+/// f(0) + f(1) + ... + f(count - 1), exact and rounded once. The terms are best sums of many entries each, in a fixed order.
 template <class F>
-real ordered_sum(int count, F&& f) {
+real exact_sum(int count, F&& f) {
     auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
     parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
-    return detail::sum_in_order(part, count);
+    ExactSum sum;
+    sum.add(std::span<const real>(part).first(static_cast<std::size_t>(count)));
+    return sum.value();
 }
 
 /// The largest of f(0) .. f(count - 1); NaN if any is NaN.
 template <class F>
-real ordered_max(int count, F&& f) {
+real parallel_max(int count, F&& f) {
     auto& part = detail::reduction_scratch(static_cast<std::size_t>(count));
     parallel_for(0, count, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
     return detail::largest_of(part, count);

@@ -134,6 +134,9 @@ public:
     virtual StepLimit stable_dt() const { return {}; }
     /// A warning about using the method on the current state, in one line, with its numbers; empty where there is none.
     virtual std::string concern() const { return {}; }
+    /// In parallel, fills the planes of other ranks that fields() and integrals() read: ghost planes, or all. Collective. Needed once after
+    /// a step whose fields are read; const functions exchange no fields, but they may reduce values over the ranks.
+    virtual void synchronize() {}
     virtual FieldSet fields() const = 0;
     /// In parallel: a scope in which fields() shows other data than all data on all ranks. The call is collective.
     class DistributedView {

@@ -142,7 +142,6 @@ private:
     std::vector<std::uint8_t> escaped_;
     std::vector<int> own_;    // in parallel: indices in the band of this rank's own cells
     std::vector<char> near_;  // in parallel: the planes in which the band is found
-    BandOfRanks ranks_;
     SkinOfRanks<D> skin_of_ranks_;
     std::vector<std::size_t> skin_end_;  // of each of its layers
     ThinWalls<D> walls_;

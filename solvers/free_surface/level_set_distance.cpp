@@ -71,8 +71,6 @@ template <int D>
 void LevelSet<D>::collect_surface() {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     band_.clear();
-    ranks_.rooted.assign(static_cast<std::size_t>(layers_), {});
-    auto& own = ranks_.rooted[0];
     for (std::size_t line = 0; line < layer_.size(); line += n) {
         Index<D> I = frame_.index_of(line);
         if (!is_near(I[D - 1])) continue;
@@ -82,8 +80,6 @@ void LevelSet<D>::collect_surface() {
             I[0] = static_cast<int>(at - mark);
             band_.push_back(I);
         }
-        if (I[D - 1] < frame_.own().begin) own.begin = band_.size();
-        if (I[D - 1] < frame_.own().end) own.end = band_.size();
     }
     layer_start_[0] = 0;
     layer_start_[1] = band_.size();
@@ -172,11 +168,7 @@ template <int D>
 void LevelSet<D>::join_layers() {
     for (int layer = 2; layer <= layers_; ++layer) {
         const std::size_t from = layer_begin(layer - 1), to = layer_end(layer - 1);
-        const auto& before = ranks_.rooted[static_cast<std::size_t>(layer) - 2];
-        auto& own = ranks_.rooted[static_cast<std::size_t>(layer) - 1];
         for (std::size_t i = from; i < to; ++i) {
-            if (i == from + before.begin) own.begin = band_.size() - to;
-            if (i == from + before.end) own.end = band_.size() - to;
             for (int d = 0; d < D; ++d)
                 for (const int by : {-1, 1}) {
                     Index<D> J = band_[i];
@@ -185,8 +177,6 @@ void LevelSet<D>::join_layers() {
                     band_.push_back(J);
                 }
         }
-        if (from + before.begin == to) own.begin = band_.size() - to;
-        if (from + before.end == to) own.end = band_.size() - to;
         layer_start_[static_cast<std::size_t>(layer)] = band_.size();
     }
     find_own();
@@ -432,22 +422,24 @@ Vec<D> LevelSet<D>::moment(const Index<D>& I) const {
     return moment;
 }
 
-/// Sum of f(I) over the open cells of the band up to a layer, in blocks of equal length: a fixed order.
+/// Sum of f(I) over the open cells of the band up to a layer.
 template <int D>
 template <class F>
 real LevelSet<D>::sum_over_band(int layers, F&& f) const {
-    const auto add = [&](real& sum, std::size_t at) {
-        if (closed_.empty() || !closed_(band_[at])) sum += open_part(band_[at]) * f(band_[at]);
-    };
-    if (frame_.own().distributed() && !near_.empty()) return ranks_.sum_of_blocks(layers, layer_start_, add);
-    constexpr std::size_t block = BandOfRanks::block;
-    const std::size_t end = layer_end(layers);
-    return ordered_sum(static_cast<int>((end + block - 1) / block), [&](int b) {
-        real sum = 0;
-        for (std::size_t i = static_cast<std::size_t>(b) * block; i < std::min(end, static_cast<std::size_t>(b + 1) * block); ++i)
-            add(sum, i);
-        return sum;
+    constexpr int blocks = 16;
+    const auto end = layer_end(layers);
+    std::array<ExactSum, blocks> part;
+    parallel_for(0, blocks, [&](int b) {
+        ExactSum sum;
+        for (std::size_t i = end * static_cast<std::size_t>(b) / blocks; i < end * static_cast<std::size_t>(b + 1) / blocks; ++i) {
+            const Index<D>& I = band_[i];
+            if (frame_.own().contains(I[D - 1]) && (closed_.empty() || !closed_(I))) sum.add(open_part(I) * f(I));
+        }
+        part[static_cast<std::size_t>(b)] = sum;
     });
+    ExactSum sum;
+    for (const ExactSum& more : part) sum.add(more);
+    return sum_of_ranks(frame_.own(), sum).value();
 }
 
 /// Outside the band a cell is full or empty.

@@ -11,7 +11,7 @@ namespace {
 /// Integral of f(column) over all columns.
 template <class F>
 real sum_over_columns(const Plane& plane, F&& f) {
-    return plane.area() * ordered_sum(plane.nz, [&](int k) {
+    return plane.area() * exact_sum(plane.nz, [&](int k) {
                real sum = 0;
                for (int i = 0; i < plane.nx; ++i) sum += f(plane.at(i, k), Vec<3>{{plane.x(i), 0, plane.z(k)}});
                return sum;

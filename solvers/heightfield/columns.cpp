@@ -159,33 +159,13 @@ void Columns::outflow_at_open_sides(real dt) {
         rate_[c] = before / (1 + dt * std::sqrt(state_.g * state_.h[c]) / d);
         return rate_[c] - before;
     };
-    const auto nx = static_cast<std::size_t>(plane.nx), nz = static_cast<std::size_t>(plane.nz);
-    for (std::size_t end = 0; end < 2; ++end) {
-        const bool first = end == 0;
-        taken_[end].assign(state_.sides.open(0, static_cast<int>(end)) ? nz : 0, 0);
-        taken_[2 + end].assign(state_.sides.open(1, static_cast<int>(end)) ? nx : 0, 0);
-        for (std::size_t r = 0; r < taken_[end].size(); ++r) taken_[end][r] = slow(first ? 0 : plane.nx - 1, static_cast<int>(r), plane.dx);
-        for (std::size_t i = 0; i < taken_[2 + end].size(); ++i)
-            taken_[2 + end][i] = slow(static_cast<int>(i), first ? 0 : plane.nz - 1, plane.dz);
+    ExactSum taken;
+    for (const int end : {0, 1}) {
+        const int i = end == 0 ? 0 : plane.nx - 1, r = end == 0 ? 0 : plane.nz - 1;
+        for (int k = 0; state_.sides.open(0, end) && k < plane.nz; ++k) taken.add(slow(i, k, plane.dx));
+        for (int k = 0; state_.sides.open(1, end) && k < plane.nx; ++k) taken.add(slow(k, r, plane.dz));
     }
-    if (own().distributed()) gather_taken();
-    real taken = 0;
-    for (const std::size_t side : {0, 2, 1, 3})  // x_min, z_min, x_max, z_max
-        for (const real change : taken_[side]) taken += change;
-    through_ += plane.area() * taken;
-}
-
-/// Gathers each rank's rows along x; the first and last row come from the ranks at the ends.
-void Columns::gather_taken() {
-    const auto ranks = static_cast<std::size_t>(own().partition().ranks());
-    for (std::size_t end = 0; end < 2; ++end) {
-        if (auto& rows = taken_[end]; !rows.empty()) communicator().gather(own().partition(), {rows.data(), sizeof(real), state_.plane.nz});
-        auto& row = taken_[2 + end];
-        if (row.empty()) continue;
-        std::vector<std::size_t> begins(ranks + 1, end == 0 ? row.size() : 0);
-        begins.front() = 0, begins.back() = row.size();
-        communicator().gather_parts(row.data(), sizeof(real), begins);
-    }
+    through_ += plane.area() * sum_of_ranks(own(), taken).value();
 }
 
 void Columns::check() const {
@@ -208,7 +188,7 @@ void Columns::check() const {
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void Columns::refresh_rows() {
+void Columns::synchronize() {
     if (ghosts_filled_) return;
     if (own().distributed_storage()) {
         const std::array<Planes, 2> all{planes_of(surface_), planes_of(rate_)};
@@ -227,7 +207,6 @@ std::string Columns::concern() const {
 }
 
 FieldSet Columns::fields() const {
-    const_cast<Columns&>(*this).refresh_rows();  // only rows of other ranks are written: the state does not change
     for_each_column(state_.plane, rows_stored(state_.plane), [&](std::size_t c) { depth_[c] = surface_[c] - state_.bed[c]; });
     FieldSet set{.grid = state_.plane.view(),
                  .fields = {{"velocity", "m/s", Where::cell, "", {nothing_.values(), rate_.values()}},
@@ -297,7 +276,6 @@ void Columns::edited(const EditableField& field) {
 }
 
 void Columns::save(Checkpoint& to) const {
-    if (!own().distributed_storage()) const_cast<Columns&>(*this).refresh_rows();  // as in fields()
     put_planes(to, "surface", surface_);
     put_planes(to, "rate", rate_);
     to.put_value("time", state_.time);
@@ -323,7 +301,6 @@ void Columns::restore(const Checkpoint& from) {
 std::size_t Columns::bytes() const {
     std::size_t total = state_.bytes() + k_.bytes() + sweep_.bytes() + floats_.bytes();
     for (const Field* f : {&surface_, &rate_, &std::as_const(depth_), &std::as_const(displaced_), &nothing_}) total += f->bytes();
-    for (const auto& side : taken_) total += side.capacity() * sizeof(real);
     return total;
 }
 

@@ -15,6 +15,7 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override { return {limit_, "columns that pull their neighbours across more than one another overshoot"}; }
     std::string concern() const override;
+    void synchronize() override;
     FieldSet fields() const override;
     bool holds_own_planes() const override { return state_.plane.own.distributed_storage(); }
     bool checks_itself() const override { return true; }
@@ -33,8 +34,6 @@ public:
 private:
     void make_stiffness();
     void outflow_at_open_sides(real dt);
-    void gather_taken();
-    void refresh_rows();
     const OwnPlanes& own() const { return state_.plane.own; }
     void check() const;
     real volume() const;
@@ -51,7 +50,6 @@ private:
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     mutable Field depth_, displaced_;
     Field nothing_;
-    std::array<std::vector<real>, 4> taken_;  // absorbed by open sides, per adjacent column: x_min, x_max, z_min, z_max
     bool ghosts_filled_ = true;               // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;

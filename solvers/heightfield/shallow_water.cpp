@@ -92,7 +92,7 @@ void ShallowWater::refresh_water(const std::array<Field*, 3>& water, int ghost_p
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void ShallowWater::refresh_rows() {
+void ShallowWater::synchronize() {
     if (ghosts_filled_) return;
     if (own().distributed_storage()) {
         refresh_water({&state_.h, &state_.qx, &state_.qz}, 1);
@@ -104,14 +104,24 @@ void ShallowWater::refresh_rows() {
 }
 
 void ShallowWater::take_reports(real weight) {
-    if (own().distributed()) communicator().gather(own().partition(), {reports_.data(), sizeof(RowReport), state_.plane.nz});
-    volume_ = 0, rate_ = 0;
-    for (const RowReport& r : reports_) {
-        volume_ += r.volume * state_.plane.dz;
-        rate_ = std::max(rate_, r.rate);
-        clipped_ = std::max(clipped_, -r.lowest);
-        state_.net_inflow += weight * r.through;
+    struct Totals {
+        ExactSum volume, through;
+        real rate = 0, clipped = 0;
+        void add(const Totals& other) {
+            volume.add(other.volume), through.add(other.through);
+            rate = std::max(rate, other.rate), clipped = std::max(clipped, other.clipped);
+        }
+    } totals;
+    for (int k = own().lower(0); k < own().upper(state_.plane.nz); ++k) {
+        const RowReport& r = reports_[static_cast<std::size_t>(k)];
+        totals.volume.add(r.volume), totals.through.add(r.through);
+        totals.rate = std::max(totals.rate, r.rate), totals.clipped = std::max(totals.clipped, -r.lowest);
     }
+    totals = sum_of_ranks(own(), totals);
+    volume_ = totals.volume.value() * state_.plane.dz;
+    rate_ = totals.rate;
+    clipped_ = std::max(clipped_, totals.clipped);
+    state_.net_inflow += weight * totals.through.value();
     if (!std::isfinite(volume_)) throw NumericalFailure("depth", "depth is no longer finite");
 }
 
@@ -123,7 +133,6 @@ StepLimit ShallowWater::stable_dt() const {
 }
 
 FieldSet ShallowWater::fields() const {
-    const_cast<ShallowWater&>(*this).refresh_rows();  // only rows of other ranks are written: the state does not change
     const OwnPlanes shown = own().distributed_storage() ? own().wider(1) : OwnPlanes{};
     const Field &h = state_.h, &qx = state_.qx, &qz = state_.qz;
     for_each_plane(shown, 0, state_.plane.nz, [&](int k) {
@@ -190,7 +199,6 @@ void ShallowWater::edited(const EditableField&) {
 }
 
 void ShallowWater::save(Checkpoint& to) const {
-    if (!own().distributed_storage()) const_cast<ShallowWater&>(*this).refresh_rows();  // as in fields()
     put_planes(to, "depth", state_.h);
     put_planes(to, "discharge_x", state_.qx);
     put_planes(to, "discharge_z", state_.qz);

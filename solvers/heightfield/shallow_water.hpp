@@ -13,6 +13,7 @@ public:
     StepReport step(real dt) override;
     real advised_dt() const override;
     StepLimit stable_dt() const override;
+    void synchronize() override;
     FieldSet fields() const override;
     bool holds_own_planes() const override { return state_.plane.own.distributed_storage(); }
     bool checks_itself() const override { return true; }
@@ -34,7 +35,6 @@ private:
     void raise_bed(real t);
     void measure();
     void refresh_water(const std::array<Field*, 3>& water, int ghost_planes);
-    void refresh_rows();
     const OwnPlanes& own() const { return state_.plane.own; }
 
     State state_;

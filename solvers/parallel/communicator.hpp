@@ -1,8 +1,8 @@
 // One run distributed over several processes (MPI ranks). Each rank owns a slab of planes along the slowest axis and computes them as one
-// process would. Ghost planes are filled by halo exchange. Sums are taken per plane and added in the order of the planes, so results are
-// bitwise equal for any number of ranks. With one rank, the default, every call does nothing.
+// process would. Ghost planes are filled by halo exchange. Sums are exact, so results are bitwise equal for any number of ranks. With one rank, the default, every call does nothing.
 #pragma once
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "parallel/partition.hpp"
 #include "parallel/slab.hpp"
 
@@ -14,6 +14,7 @@
 #include <memory>
 #include <numeric>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace weir {
@@ -140,6 +141,34 @@ void by_first_rank(F&& f) {
     if (communicator().largest(failure ? 1 : 0) == 0) return;
     if (failure) std::rethrow_exception(failure);
     throw OutputError("rank 0 could not write");
+}
+
+/// The exact sum of the terms of all ranks that share these planes: `here` is this rank's sum. An ExactSum, or ExactSums of several
+/// quantities in one message.
+template <class Sum>
+    requires std::is_class_v<Sum>
+Sum sum_of_ranks(const OwnPlanes& own, const Sum& here) {
+    if (!own.distributed()) return here;
+    Sum all{};
+    for (const Sum& of_rank : of_ranks(here)) all.add(of_rank);
+    return all;
+}
+
+/// The same for a list of sums, of equal length on all ranks.
+template <class Sum>
+void sums_of_ranks(const OwnPlanes& own, std::vector<Sum>& list) {
+    if (!own.distributed() || list.empty()) return;
+    const std::vector<Sum> all = of_all_ranks(list);
+    const std::size_t count = list.size();
+    list.assign(count, Sum{});
+    for (std::size_t i = 0; i < all.size(); ++i) list[i % count].add(all[i]);
+}
+
+/// The largest value of all ranks that share these planes; NaN if any is NaN.
+inline real largest_of_ranks(const OwnPlanes& own, real here) {
+    if (!own.distributed()) return here;
+    const std::vector<real> list = of_ranks(here);
+    return detail::largest_of(list, static_cast<int>(list.size()));
 }
 
 /// Sum of a value over the ranks that share these planes; for replicated work the value itself.

@@ -1,5 +1,5 @@
-// A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis. Sums are taken per plane
-// and added in the order of the planes, so results do not depend on the number of threads or ranks. Which planes are this rank's comes from
+// A dense array over a box of cells, x fastest, and the loops over it. Loops are threaded over the slowest axis. A sum is the
+// exact sum of those of its planes, so results do not depend on the number of threads or ranks. Which planes are this rank's comes from
 // the extent (parallel/slab.hpp).
 #pragma once
 #include "core/parallel.hpp"
@@ -83,26 +83,35 @@ void for_each_plane(const Extent<D>& extent, F&& f) {
 }
 
 namespace detail {
-/// f of all planes: computed here for this rank's planes, received from the owner for the others.
+/// f of this rank's planes within [0, planes): their parts, and the range.
 template <class F>
 const std::vector<real>& parts_of_planes(const OwnPlanes& own, int planes, F&& f) {
     auto& part = reduction_scratch(static_cast<std::size_t>(planes));
     for_each_plane(own, 0, planes, [&](int i) { part[static_cast<std::size_t>(i)] = f(i); });
-    if (own.distributed()) communicator().gather(own.partition(), {part.data(), sizeof(real), planes});
     return part;
 }
 }  // namespace detail
 
-/// f(0) + f(1) + ... over planes, added in that order.
+/// The exact sum of f over planes, rounded once.
 template <class F>
 real plane_sum(const OwnPlanes& own, int planes, F&& f) {
-    return detail::sum_in_order(detail::parts_of_planes(own, planes, f), planes);
+    const auto& part = detail::parts_of_planes(own, planes, f);
+    const int first = own.lower(0), last = std::max(first, own.upper(planes));
+    ExactSum sum;
+    sum.add(std::span<const real>(part).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first)));
+    return sum_of_ranks(own, sum).value();
 }
 
 /// The largest of f over planes; NaN if any is NaN.
 template <class F>
 real plane_max(const OwnPlanes& own, int planes, F&& f) {
-    return detail::largest_of(detail::parts_of_planes(own, planes, f), planes);
+    const auto& part = detail::parts_of_planes(own, planes, f);
+    real most = -infinity;
+    for (int i = own.lower(0); i < own.upper(planes) && !std::isnan(most); ++i) {
+        const real value = part[static_cast<std::size_t>(i)];
+        if (value > most || std::isnan(value)) most = value;
+    }
+    return largest_of_ranks(own, most);
 }
 
 template <class T, int D>
@@ -156,7 +165,7 @@ void for_each_cell(const Extent<D>& extent, F&& f) {
     for_each_in(Index<D>::constant(0), extent, f);
 }
 
-/// Sum of f(I) over a box, per plane of the slowest axis and then in the order of the planes: bitwise equal for any thread count.
+/// Sum of f(I) over a box: the exact sum of those of its planes, bitwise equal for any number of threads and ranks.
 template <int D, class F>
 real sum_over(const Extent<D>& extent, F&& f) {
     return plane_sum(extent.own, extent[D - 1], [&](int outer) {

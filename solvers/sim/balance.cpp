@@ -199,7 +199,7 @@ std::vector<std::pair<std::string, real>> thin_solids(const scene::Scene& scene,
     return list;
 }
 
-Balance::Balance(const Simulation& simulation) : from_(simulation.time()), start_(simulation.solver().integrals()) {
+Balance::Balance(const Simulation& simulation) : from_(simulation.time()), start_(simulation.integrals()) {
     if (const auto energy = total_energy(start_)) highest_energy_ = *energy;
 }
 
@@ -211,7 +211,7 @@ void Balance::on_step(const Simulation& simulation, const StepReport& report) {
 }
 
 void Balance::on_frame(const Simulation& simulation) {
-    const std::vector<Integral> now = simulation.solver().integrals();
+    const std::vector<Integral> now = simulation.integrals();
     if (const auto energy = total_energy(now)) highest_energy_ = std::max(highest_energy_, *energy);
     if (const auto b = volume(simulation.scene(), start_, now);
         b && b->unexplained && std::abs(*b->unexplained) > std::abs(furthest_drift_))
@@ -220,7 +220,7 @@ void Balance::on_frame(const Simulation& simulation) {
 
 BalanceOfRun Balance::of_run(const Simulation& simulation) const {
     const scene::Scene& scene = simulation.scene();
-    const std::vector<Integral> end = simulation.solver().integrals();
+    const std::vector<Integral> end = simulation.integrals();
     const GridView grid = simulation.fields().grid;
     BalanceOfRun run{.from = from_,
                      .to = simulation.time(),

@@ -25,7 +25,7 @@ bool all_finite(std::span<const real> values) {
 bool all_finite_threaded(std::span<const real> values) {
     constexpr std::size_t block = 1u << 16;
     const auto blocks = static_cast<int>((values.size() + block - 1) / block);
-    return 0 == ordered_sum(blocks, [&](int b) {
+    return 0 == exact_sum(blocks, [&](int b) {
                const std::size_t begin = static_cast<std::size_t>(b) * block;
                return all_finite(values.subspan(begin, std::min(block, values.size() - begin))) ? 0.0 : 1.0;
            });

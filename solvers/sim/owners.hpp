@@ -2,7 +2,6 @@
 #pragma once
 #include "core/solver.hpp"
 #include "parallel/ownership.hpp"
-#include "parallel/rank_ordered.hpp"
 
 #include <algorithm>
 #include <span>
@@ -47,13 +46,13 @@ inline bool in_parts(const FieldSet& fields, const FieldView& view) {
     return (view.where == Where::particle && fields.particles_in_parts) || (fields.cut != nullptr && planes_in(fields, view, 0) > 1);
 }
 
-/// Rank-ordered reduction: add(value) adds the entries of a field that this rank reads to a value, one rank after another, in the order of
-/// one process.
-template <class T, class F>
-T added_by_owners(const FieldSet& fields, const FieldView& view, T value, const F& add) {
-    if (in_parts(fields, view)) return rank_ordered_reduction(value, add);
-    add(value);
-    return value;
+/// Sum over the ranks: `here` is that of the entries of a field that this rank reads. Its add() must not depend on the order.
+template <class Sum>
+Sum sum_of_owners(const FieldSet& fields, const FieldView& view, const Sum& here) {
+    if (!in_parts(fields, view)) return here;
+    Sum all{};
+    for (const Sum& of_rank : of_ranks(here)) all.add(of_rank);
+    return all;
 }
 
 /// Maximum over the ranks.

@@ -24,11 +24,11 @@ std::string component_name(const std::string& field, int components, int compone
     return components == 1 ? field : field + '_' + "xyz"[component];
 }
 
-/// The sum of a cell field's values, in order.
+/// The exact sum of a cell field's values.
 real sum_of(const FieldSet& fields, const FieldView& view, std::size_t component) {
-    return added_by_owners(fields, view, real{0}, [&](real& sum) {
-        for (const real value : own_values(fields, view, component)) sum += value;
-    });
+    ExactSum sum;
+    sum.add(own_values(fields, view, component));
+    return sum_of_owners(fields, view, sum).value();
 }
 
 /// Returns whether a point lies inside a solid, not on its surface.

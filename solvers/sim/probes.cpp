@@ -57,8 +57,9 @@ std::vector<real> between(const std::vector<real>& begin, const std::vector<real
 
 }  // namespace
 
-Probes::Probes(const scene::Scene& scene, const Solver& solver) {
+Probes::Probes(const scene::Scene& scene, Solver& solver) {
     const auto& tables = scene.root().tables("probes");
+    if (!tables.empty()) solver.synchronize();
     for (std::size_t i = 0; i < tables.size(); ++i) {
         ProbeSeries series;
         series.name = tables[i].text("name");
@@ -72,13 +73,16 @@ Probes::Probes(const scene::Scene& scene, const Solver& solver) {
 }
 
 /// The fields are fetched once, by the first probe that needs them.
-std::vector<real> Probes::measured(std::size_t probe, const Solver& solver, FieldSet& fields) const {
-    if (fields.fields.empty()) fields = solver.fields();
+std::vector<real> Probes::measured(std::size_t probe, Solver& solver, FieldSet& fields) const {
+    if (fields.fields.empty()) {
+        solver.synchronize();
+        fields = std::as_const(solver).fields();
+    }
     return kinds_[probe]->measure(solver, fields);
 }
 
 /// A probe that a continued run adds: its first row is at the present time, where this is one of its times.
-void Probes::join(std::size_t probe, const Solver& solver, FieldSet& fields) {
+void Probes::join(std::size_t probe, Solver& solver, FieldSet& fields) {
     Clock& clock = clocks_[probe];
     clock.joins = false;
     clock.next = first_after(clock.every, solver.time());
@@ -88,7 +92,7 @@ void Probes::join(std::size_t probe, const Solver& solver, FieldSet& fields) {
     series_[probe].values.push_back(clock.begin);
 }
 
-void Probes::before_step(const Solver& solver, real dt) {
+void Probes::before_step(Solver& solver, real dt) {
     began_ = solver.time();
     const real end = began_ + dt;
     FieldSet fields;
@@ -101,7 +105,7 @@ void Probes::before_step(const Solver& solver, real dt) {
     }
 }
 
-void Probes::add_rows(std::size_t probe, const Solver& solver, FieldSet& fields) {
+void Probes::add_rows(std::size_t probe, Solver& solver, FieldSet& fields) {
     Clock& clock = clocks_[probe];
     const real end = solver.time();
     std::vector<real> after;
@@ -114,7 +118,7 @@ void Probes::add_rows(std::size_t probe, const Solver& solver, FieldSet& fields)
     clock.begin.clear();
 }
 
-void Probes::sample(const Solver& solver) {
+void Probes::sample(Solver& solver) {
     FieldSet fields;
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
         if (clocks_[i].every > 0) {
@@ -126,7 +130,7 @@ void Probes::sample(const Solver& solver) {
     }
 }
 
-void Probes::keep(const Solver& solver) {
+void Probes::keep(Solver& solver) {
     FieldSet fields;
     for (std::size_t i = 0; i < clocks_.size(); ++i)
         if (clocks_[i].every > 0 && clocks_[i].begin.empty()) clocks_[i].begin = measured(i, solver, fields);

@@ -50,14 +50,14 @@ class Probes {
 public:
     Probes() = default;
     /// The scene's probes. Throws BadScene for probes of quantities that the solver does not have.
-    Probes(const scene::Scene& scene, const Solver& solver);
+    Probes(const scene::Scene& scene, Solver& solver);
     /// Before a step of dt [s]: measures the probes that have a sample time within it.
-    void before_step(const Solver& solver, real dt);
+    void before_step(Solver& solver, real dt);
     /// At the start and after each step: measures every probe that is due.
-    void sample(const Solver& solver);
+    void sample(Solver& solver);
     /// Measures now for the rows of the next step. The solver is about to be replaced by one with the same state, which may not provide the
     /// same fields before its first step.
-    void keep(const Solver& solver);
+    void keep(Solver& solver);
     /// The state was changed: measurements at the beginning of the next step are no longer valid.
     void forget();
     /// Remarks about measurements since the last call, one line each.
@@ -75,9 +75,9 @@ private:
         bool joins = false;       // the probe begins in the middle of a run: `next` is not known yet
         std::vector<real> begin;  // measured at the beginning of the step; empty: not measured
     };
-    void join(std::size_t probe, const Solver& solver, FieldSet& fields);
-    std::vector<real> measured(std::size_t probe, const Solver& solver, FieldSet& fields) const;
-    void add_rows(std::size_t probe, const Solver& solver, FieldSet& fields);
+    void join(std::size_t probe, Solver& solver, FieldSet& fields);
+    std::vector<real> measured(std::size_t probe, Solver& solver, FieldSet& fields) const;
+    void add_rows(std::size_t probe, Solver& solver, FieldSet& fields);
 
     std::vector<std::unique_ptr<ProbeKind>> kinds_;
     std::vector<Clock> clocks_;

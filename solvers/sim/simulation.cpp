@@ -171,7 +171,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
     read_times();
     if (scene_.has("output.fields")) {
         const auto parts = static_cast<const Solver&>(*solver_).distributed_view();
-        check_output_fields(scene_, solver_->fields());
+        check_output_fields(scene_, fields());
     }
     refuse_ignored(scene_, kind_);
     for (const std::string& remark : mac::remarks_on_thin_solids(scene_)) warnings_.push_back(scene_.file() + ": " + remark);

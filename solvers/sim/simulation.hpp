@@ -114,7 +114,15 @@ public:
     /// Threads of the next step: the number that was set, otherwise at most as many as the scene has work for (ProblemSizeScope), chosen by
     /// measured times (ThreadChoice).
     int threads() const;
-    FieldSet fields() const { return static_cast<const Solver&>(*solver_).fields(); }
+    /// In parallel collective (Solver::synchronize).
+    FieldSet fields() const {
+        solver_->synchronize();
+        return static_cast<const Solver&>(*solver_).fields();
+    }
+    std::vector<Integral> integrals() const {
+        solver_->synchronize();
+        return solver_->integrals();
+    }
     Solver& solver() { return *solver_; }
     const Solver& solver() const { return *solver_; }
     const scene::Scene& scene() const { return scene_; }

@@ -24,7 +24,7 @@ void Heat<D>::note(MacState<D>& s) {
     const real per_heat = 1 / std::max(m.h_liquid - m.h_solid, std::numeric_limits<real>::min());
     const int planes = s.extent()[D - 1];
     const std::size_t plane = h.size() / static_cast<std::size_t>(planes);
-    const real hottest = ordered_max(planes, [&](int k) {
+    const real hottest = parallel_max(planes, [&](int k) {
         const std::size_t first = static_cast<std::size_t>(k) * plane;
         const real* at = h.data() + first;
         real *t = T.data() + first, *f = liquid_.data() + first;

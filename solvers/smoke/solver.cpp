@@ -525,26 +525,22 @@ void FlowSolver<D>::check_own_planes() const {
     for (const auto& field : state_.fields) check(field.values, field.name);
 }
 
-/// Gathers the planes of other ranks for reading whole fields; collective. With distributed storage it fills the ghost planes only.
+/// Ghost planes, or the planes of all ranks where whole fields are read.
 template <int D>
-void FlowSolver<D>::gather_whole() const {
+void FlowSolver<D>::synchronize() {
+    if (walls_ && state_.nu > 0 && !walls_->found()) walls_->find(state_, solids_, state_.time, state_.time);
     if (whole_) return;
-    if (own().distributed_storage()) return fill_ghosts();
-    auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
-    for (int a = 0; a < D; ++a) gather(state.u[a]);
-    gather(state.p);
-    for (auto& field : state.fields) gather(field.values);
-    whole_ = true;
-}
-
-template <int D>
-void FlowSolver<D>::fill_ghosts() const {
-    auto& state = const_cast<MacState<D>&>(state_);
-    std::vector<Planes> all;
-    for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    all.push_back(planes_of(state.p));
-    for (auto& field : state.fields) all.push_back(planes_of(field.values));
-    communicator().refresh(own().partition(), all, planes_beside, state_.sides.periodic(D - 1));
+    std::vector<Grid<real, D>*> shown;
+    for (int a = 0; a < D; ++a) shown.push_back(&state_.u[a]);
+    shown.push_back(&state_.p);
+    for (auto& field : state_.fields) shown.push_back(&field.values);
+    if (own().distributed_storage()) {
+        shared_.clear();
+        for (auto* grid : shown) shared_.push_back(planes_of(*grid));
+        communicator().refresh(own().partition(), shared_, planes_beside, state_.sides.periodic(D - 1));
+    } else {
+        for (auto* grid : shown) gather(*grid);
+    }
     whole_ = true;
 }
 
@@ -566,25 +562,21 @@ StepLimit FlowSolver<D>::stable_dt() const {
 
 template <int D>
 FieldSet FlowSolver<D>::fields() const {
-    gather_whole();
-    const bool gathers = own().distributed() && !own().distributed_storage();
+    const Extent<D> shown = own().distributed_storage() ? state_.extent() : replicated<D>(state_.extent());
     FieldSet set = field_set(state_);
     if (own().distributed_storage()) set.cut = &own().partition();
     if (heat_) set.fields.push_back({"liquid", "", Where::cell, "", {heat_->liquid().values()}});
     if (wants_vorticity_) {
-        vorticity(state_, vorticity_);
+        vorticity(state_, shown, vorticity_);
         FieldView view{"vorticity", "1/s", Where::cell, "", {}};
-        for (auto& component : vorticity_)
-            if (gathers) gather(component);
         for (const auto& component : vorticity_) view.data.push_back(component.values());
         set.fields.push_back(std::move(view));
     }
     if (wants_divergence_) {
         if (divergence_.empty()) divergence_ = Grid<real, D>(state_.extent());
-        for_each_cell(state_.extent(), [&](const Index<D>& I) {
+        for_each_cell(shown, [&](const Index<D>& I) {
             divergence_(I) = state_.cells(I) == poisson::Cell::fluid ? flux_divergence(state_, I) : 0;
         });
-        if (gathers) gather(divergence_);
         set.fields.push_back({"divergence", "1/s", Where::cell, "", {divergence_.values()}});
     }
     if (bodies_) bodies_->bodies().show(set);
@@ -593,7 +585,6 @@ FieldSet FlowSolver<D>::fields() const {
 
 template <int D>
 std::vector<Integral> FlowSolver<D>::integrals() const {
-    gather_whole();
     auto list = smoke::integrals(state_);
     if (heat_)
         for (auto& integral : heat_->integrals(state_)) list.push_back(std::move(integral));
@@ -615,7 +606,6 @@ void FlowSolver<D>::add_loads(std::vector<Integral>& list) const {
     const SolidLoad<D> pressure = pressure_load(state_);
     SolidLoad<D> friction;
     if (walls_ && state_.nu > 0) {
-        if (!walls_->found()) walls_->find(state_, solids_, state_.time, state_.time);
         friction = walls_->friction(state_);
     }
     const std::string force_unit = D == 2 ? "N/m" : "N", torque_unit = D == 2 ? "N" : "N m";
@@ -651,8 +641,8 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     if (heat_) heat_->restore(from, state_);
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !own().distributed();
-    gather_whole();
     if (walls_) walls_->forget();
+    synchronize();
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (from.has("smoke_in_solids")) {

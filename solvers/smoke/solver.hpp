@@ -39,6 +39,7 @@ public:
     StepReport step(real dt) override;
     real advised_dt() const override;
     StepLimit stable_dt() const override;
+    void synchronize() override;
     FieldSet fields() const override;
     bool holds_own_planes() const override { return own().distributed_storage(); }
     std::vector<Integral> integrals() const override;
@@ -93,9 +94,7 @@ private:
     StepReport report(real dt);
     void refresh_fields();
     void check_own_planes() const;
-    void gather_whole() const;
 
-    void fill_ghosts() const;
     void add_loads(std::vector<Integral>& list) const;
 
     Effects<MacState<D>> effects_;
@@ -128,7 +127,7 @@ private:
     std::vector<WithBoundary<D>> remembered_fields_, remembered_;  // uⁿ, qⁿ and both
     std::vector<WithBoundary<D>> carried_velocity_;
     std::vector<Planes> shared_;  // scratch: arrays exchanged in one message
-    mutable bool whole_ = true;   // other ranks' planes, or the ghost planes, are up to date
+    bool whole_ = true;           // other ranks' planes, or the ghost planes, are up to date
 };
 
 }  // namespace weir::smoke

@@ -39,6 +39,8 @@ struct ColumnPlaces {
     LineRange own() const {
         return cut.empty() ? LineRange{0, n[1]} : LineRange{cut.begin(communicator().rank()), cut.end(communicator().rank(), n[1])};
     }
+    /// The same, for reductions.
+    OwnPlanes planes() const { return OwnPlanes(slab_of(cut, 1, periodic[1])); }
     /// In parallel the line after these, whose faces towards them they own too; −1 where there is none.
     int beyond() const {
         if (cut.empty()) return -1;

@@ -12,27 +12,6 @@ namespace weir::tallcell {
 
 namespace {
 
-/// All-gather of the partial sums of the blocks of all lines, N numbers each.
-template <std::size_t N>
-struct Parts {
-    const std::vector<real>& of_block;
-    int count;
-
-    real sum(std::size_t i) const {
-        return fold(i, 0, [](real sum, real part) { return sum + part; });
-    }
-    real largest(std::size_t i) const {
-        return fold(i, 0, [](real most, real part) { return std::max(most, part); });
-    }
-
-private:
-    template <class F>
-    real fold(std::size_t i, real value, F&& f) const {
-        for (int b = 0; b < count; ++b) value = f(value, of_block[at(b) * N + i]);
-        return value;
-    }
-};
-
 /// f(block, begin, end) for the entries of this rank's lines, in blocks of equal size.
 template <class F>
 void for_each_block_of_lines(const ColumnPlaces& places, F&& f) {
@@ -44,17 +23,30 @@ void for_each_block_of_lines(const ColumnPlaces& places, F&& f) {
     });
 }
 
-/// Sum of f(begin, end) over all blocks of all ranks: independent of the number of threads and ranks.
-template <std::size_t N, class F>
-Parts<N> parts_of_lines(const ColumnPlaces& places, F&& f) {
-    const int blocks = places.blocks_of_line(), count = places.n[1] * blocks;
-    auto& parts = detail::reduction_scratch(at(count) * N);
-    for_each_block_of_lines(places, [&](int i, std::size_t begin, std::size_t end) {
-        const std::array<real, N> found = f(begin, end);
-        std::copy(found.begin(), found.end(), parts.begin() + static_cast<std::ptrdiff_t>(at(i) * N));
-    });
-    if (!places.cut.empty()) communicator().gather(places.cut, {parts.data(), N * sizeof(real) * at(blocks), places.n[1]});
-    return {parts, count};
+/// N sums and M maxima.
+template <std::size_t N, std::size_t M>
+struct Totals {
+    std::array<real, N> sums{};
+    std::array<real, M> largest{};
+    void see(const std::array<real, M>& other) {
+        for (std::size_t i = 0; i < M; ++i) largest[i] = std::max(largest[i], other[i]);
+    }
+};
+
+/// The totals of f(begin, end) over all blocks of all ranks; sums are exact.
+template <std::size_t N, std::size_t M, class F>
+Totals<N, M> totals_of_lines(const ColumnPlaces& places, F&& f) {
+    const int blocks = places.blocks_of_line(), first = places.own().begin * blocks;
+    std::vector<Totals<N, M>> parts(at(places.own().end * blocks - first));
+    for_each_block_of_lines(places, [&](int i, std::size_t begin, std::size_t end) { parts[at(i - first)] = f(begin, end); });
+    struct OfRank {
+        ExactSums<std::array<real, N>> sums{};
+        Totals<N, M> most{};
+        void add(const OfRank& other) { sums.add(other.sums), most.see(other.most.largest); }
+    } all;
+    for (const auto& part : parts) all.sums.add(part.sums), all.most.see(part.largest);
+    all = sum_of_ranks(places.planes(), all);
+    return {all.sums.value(), all.most.largest};
 }
 
 /// y = A x; returns x·y. In parallel the ghost lines of x must be filled.
@@ -107,8 +99,10 @@ real multiply_and_dot(const ColumnMatrix& A, LineStore<real>& x, LineStore<real>
             }
         parts[at(z)] = dot;
     });
-    if (!A.cut.empty()) communicator().gather(A.cut, {parts.data(), sizeof(real), A.n[1]});
-    return detail::sum_in_order(parts, A.n[1]);
+    const LineRange own = A.own();
+    ExactSum sum;
+    sum.add(std::span<const real>(parts).subspan(at(own.begin), at(own.end - own.begin)));
+    return sum_of_ranks(A.planes(), sum).value();
 }
 
 }  // namespace
@@ -175,17 +169,17 @@ struct ColumnMultigrid::System {
     real precondition() {
         of.precondition(A, largest);
         const LineStore<float>& z = of.levels_[0].x;
-        const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
+        const auto totals = totals_of_lines<2, 0>(A, [&](std::size_t begin, std::size_t end) {
             real with_Ap = 0, zr = 0;
 #pragma omp simd reduction(+ : with_Ap, zr)
             for (std::size_t i = begin; i < end; ++i) {
                 with_Ap += static_cast<real>(z[i]) * of.Ap_[i];
                 zr += static_cast<real>(z[i]) * of.r_[i];
             }
-            return std::array{with_Ap, zr};
+            return Totals<2, 0>{{with_Ap, zr}, {}};
         });
-        zAp = parts.sum(0);
-        return of.scale_ * parts.sum(1);
+        zAp = totals.sums[0];
+        return of.scale_ * totals.sums[1];
     }
     /// A single-precision preconditioner is not exactly constant.
     real flexible_beta(const linear::Step& last) const { return -last.alpha * of.scale_ * zAp / last.rz; }
@@ -202,7 +196,7 @@ struct ColumnMultigrid::System {
     }
     real multiply() { return multiply_and_dot(A, of.p_, of.Ap_); }
     real advance(real alpha) {
-        const auto parts = parts_of_lines<2>(A, [&](std::size_t begin, std::size_t end) {
+        const auto totals = totals_of_lines<1, 1>(A, [&](std::size_t begin, std::size_t end) {
             real squares = 0, most = 0;
 #pragma omp simd reduction(+ : squares) reduction(max : most)
             for (std::size_t i = begin; i < end; ++i) {
@@ -212,10 +206,10 @@ struct ColumnMultigrid::System {
                 squares += r * r;
                 most = std::max(most, std::abs(r));
             }
-            return std::array{squares, most};
+            return Totals<1, 1>{{squares}, {most}};
         });
-        largest = parts.largest(1);
-        return std::sqrt(parts.sum(0)) / b_norm;
+        largest = totals.largest[0];
+        return std::sqrt(totals.sums[0]) / b_norm;
     }
 };
 
@@ -255,7 +249,7 @@ const poisson::Report& ColumnMultigrid::solve(const ColumnMatrix& A, const Knots
 ColumnMultigrid::Residual ColumnMultigrid::residual(const ColumnMatrix& A) {
     refresh_lines(A, x_);
     multiply_and_dot(A, x_, Ap_);
-    const auto parts = parts_of_lines<4>(A, [&](std::size_t begin, std::size_t end) {
+    const auto totals = totals_of_lines<2, 2>(A, [&](std::size_t begin, std::size_t end) {
         real squares = 0, most = 0, b_squares = 0, b_most = 0;
 #pragma omp simd reduction(+ : squares, b_squares) reduction(max : most, b_most)
         for (std::size_t i = begin; i < end; ++i) {
@@ -264,9 +258,9 @@ ColumnMultigrid::Residual ColumnMultigrid::residual(const ColumnMatrix& A) {
             squares += r * r, b_squares += b_[i] * b_[i];
             most = std::max(most, std::abs(r)), b_most = std::max(b_most, std::abs(b_[i]));
         }
-        return std::array{squares, most, b_squares, b_most};
+        return Totals<2, 2>{{squares, b_squares}, {most, b_most}};
     });
-    return {std::sqrt(parts.sum(0)), parts.largest(1), parts.sum(2), parts.largest(3)};
+    return {std::sqrt(totals.sums[0]), totals.largest[0], totals.sums[1], totals.largest[1]};
 }
 
 }  // namespace weir::tallcell

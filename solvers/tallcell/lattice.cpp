@@ -11,17 +11,10 @@ template <int D>
 template <class F>
 real TallPressure<D>::largest_of_blocks(const ColumnRange& columns, F&& f) const {
     const int n = layout_.n[0], size = layout_.axes[0] == 0 ? block_columns : 1, a_line = (n + size - 1) / size;
-    return ordered_max(a_line * ((columns.end - columns.begin) / n), [&](int i) {
+    return parallel_max(a_line * ((columns.end - columns.begin) / n), [&](int i) {
         const int x = i % a_line * size;
         return f(Block{columns.begin + i / a_line * n + x, std::min(size, n - x)});
     });
-}
-
-/// Maximum over the ranks; NaN if any is NaN.
-static real largest_of_ranks(const OwnPlanes& own, real value) {
-    if (!own.distributed()) return value;
-    const std::vector<real> all = of_ranks(value);
-    return detail::largest_of(all, static_cast<int>(all.size()));
 }
 
 /// Walks up the runs along horizontal axis h of a block's columns. Calls together(first, run, indices) while all columns with a face, from

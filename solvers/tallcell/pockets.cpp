@@ -140,14 +140,13 @@ void Pockets::weigh(const Knots& knots) {
 /// Σ of(knot) times its rows, per pocket.
 template <class F>
 void Pockets::sum_up(F&& of, std::vector<real>& sums) const {
-    const std::size_t pockets = at(count_);
-    refill_scratch<real>(by_line_, pockets * at(places_.n[1]), 0);
+    sums_.assign(at(count_), ExactSum{});
     for (int z = own_.begin; z < own_.end; ++z)
         for (std::size_t i = at(begin_[at(z)]); i < at(end_[at(z)]); ++i)
-            if (pocket_[i] >= 0) by_line_[at(z) * pockets + at(pocket_[i])] += mass_[i] * of(i);
-    if (!places_.cut.empty()) communicator().gather(places_.cut, {by_line_.data(), sizeof(real) * pockets, places_.n[1]});
-    refill_scratch<real>(sums, pockets, 0);
-    for (std::size_t i = 0; i < by_line_.size(); ++i) sums[i % pockets] += by_line_[i];
+            if (pocket_[i] >= 0) sums_[at(pocket_[i])].add(mass_[i] * of(i));
+    sums_of_ranks(places_.planes(), sums_);
+    resize_scratch(sums, sums_.size());
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums[i] = sums_[i].value();
 }
 
 void Pockets::make_compatible(std::vector<real>& b) const {
@@ -168,7 +167,8 @@ std::size_t Pockets::bytes() const {
     return (begin_.capacity() + end_.capacity() + number_.capacity() + parent_.capacity() + pocket_.capacity() + here_.capacity() +
             lower_.capacity() + firsts_.capacity()) *
                sizeof(int) +
-           open_.capacity() + (mass_.capacity() + size_.capacity() + mean_.capacity() + by_line_.capacity()) * sizeof(real);
+           open_.capacity() + (mass_.capacity() + size_.capacity() + mean_.capacity()) * sizeof(real) +
+           sums_.capacity() * sizeof(ExactSum);
 }
 
 }  // namespace weir::tallcell

@@ -49,7 +49,8 @@ private:
     Ints firsts_;                    // first knots of lines, and of pockets
     std::vector<char> open_;         // per root: whether any of its knots touches air
     std::vector<real> mass_, size_;  // rows per knot and per pocket
-    mutable std::vector<real> mean_, by_line_;
+    mutable std::vector<real> mean_;
+    mutable std::vector<ExactSum> sums_;  // of the pockets
 };
 
 }  // namespace weir::tallcell

@@ -108,7 +108,7 @@ void TallPressure<D>::find_runs(const MacState<D>& state) {
         });
     }
     floor_ =
-        -static_cast<int>(ordered_max(own.end - own.begin, [&](int i) { return static_cast<real>(-covered_from_below(own.begin + i)); }));
+        -static_cast<int>(parallel_max(own.end - own.begin, [&](int i) { return static_cast<real>(-covered_from_below(own.begin + i)); }));
 }
 
 /// The row up to which a column's faces on its lower sides, and its own, are in runs. Walls have a prescribed velocity.
@@ -212,7 +212,7 @@ void TallPressure<D>::project_vertical(const Grid<real, D>& phi, MacState<D>& st
 template <int D>
 real TallPressure<D>::energy(const Grid<real, D>& phi, const MacState<D>& state) const {
     const Knots& knots = knots_;
-    return ordered_sum(layout_.columns(), [&](int c) {
+    return exact_sum(layout_.columns(), [&](int c) {
         real sum = 0;
         for (int h = 0; h < D - 1; ++h) {
             const int axis = layout_.axes[at(h)], lower = layout_.lower(c, h);

@@ -28,28 +28,22 @@ void TallCells<D>::refresh_velocity(real dt) {
     solids_.fill_ghosts(state_, reach_);
 }
 
-/// Gathers the planes of other ranks for reading whole fields; collective.
+/// The heights of cells, and ghost planes, where the level set is valid since redistance(); or the planes of all ranks where whole fields are
+/// read.
 template <int D>
-void TallCells<D>::gather_whole() const {
+void TallCells<D>::synchronize() {
     if (whole_) return;
-    if (own().distributed_storage()) return fill_ghosts();
-    auto& state = const_cast<MacState<D>&>(state_);  // only planes of other ranks are written: the state does not change
-    for (int a = 0; a < D; ++a) gather(state.u[a]);
-    gather(state.p);
-    gather(const_cast<Grid<real, D>&>(surface_.phi));
     pressure_.write_heights(tall_);
-    gather(tall_);
-    whole_ = true;
-}
-
-/// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
-template <int D>
-void TallCells<D>::fill_ghosts() const {
-    pressure_.write_heights(tall_);
-    auto& state = const_cast<MacState<D>&>(state_);
-    std::vector<Planes> all{planes_of(state.p), planes_of(tall_)};
-    for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    communicator().refresh(own().partition(), all, 2, frame_.periodic(D - 1));
+    std::vector<Grid<real, D>*> shown{&state_.p, &tall_};
+    for (int a = 0; a < D; ++a) shown.push_back(&state_.u[a]);
+    if (own().distributed_storage()) {
+        std::vector<Planes> all;
+        for (auto* grid : shown) all.push_back(planes_of(*grid));
+        communicator().refresh(own().partition(), all, 2, frame_.periodic(D - 1));
+    } else {
+        for (auto* grid : shown) gather(*grid);
+        surface_.gather_whole();
+    }
     whole_ = true;
 }
 
@@ -84,7 +78,7 @@ void Transport<D>::keep(const MacVelocity<D>& u, int beside) {
 
 #define WEIR_INSTANTIATE(D)                                \
     template void TallCells<D>::refresh_velocity(real dt); \
-    template void TallCells<D>::gather_whole() const;      \
+    template void TallCells<D>::synchronize();             \
     template void Transport<D>::keep(const MacVelocity<D>&, int);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -8,7 +8,6 @@ namespace weir::tallcell {
 
 template <int D>
 FieldSet TallCells<D>::fields() const {
-    gather_whole();
     if (!own().distributed()) pressure_.write_heights(tall_);
     FieldSet set;
     set.grid = grid_view(state_.u);
@@ -24,7 +23,6 @@ FieldSet TallCells<D>::fields() const {
 
 template <int D>
 std::vector<Integral> TallCells<D>::integrals() const {
-    gather_whole();
     std::vector<Integral> list = Measure<D>(frame_, surface_, closed_, &volume_.part())
                                      .integrals(leapfrog_.at_end(state_.u, frame_), state_.rho, gravity_, up_, volume_target_);
     list.insert(list.begin() + 1, {"surface_volume", list[0].unit, list[0].value});

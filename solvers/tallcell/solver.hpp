@@ -43,6 +43,7 @@ public:
     StepReport step(real dt) override;
     real advised_dt() const override;
     StepLimit stable_dt() const override;
+    void synchronize() override;
     FieldSet fields() const override;
     bool holds_own_planes() const override { return own().distributed_storage(); }
     std::vector<Integral> integrals() const override;
@@ -84,8 +85,6 @@ private:
 
     // In parallel (ranks.cpp)
     void refresh_velocity(real dt);
-    void gather_whole() const;
-    void fill_ghosts() const;
 
     void set_fixed_faces();
     void mark_liquid_faces();
@@ -114,7 +113,7 @@ private:
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
     int reach_ = 0;              // ghost planes that motion reads in this step
-    mutable bool whole_ = true;  // other ranks' planes, or the ghost planes, are up to date
+    bool whole_ = true;          // other ranks' planes, or the ghost planes, are up to date
 };
 
 }  // namespace weir::tallcell

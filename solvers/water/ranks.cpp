@@ -9,7 +9,7 @@ namespace weir::water {
 /// markers.
 template <int D>
 void Water<D>::refresh_velocity(real dt) {
-    whole_ = !own().distributed(), markers_whole_ = false;
+    whole_ = !own().distributed();
     if (!own().distributed()) return;
     const auto timed = passes_.time("exchange");
     const int planes = frame_.cells[D - 1];
@@ -79,41 +79,28 @@ void Water<D>::check_own() const {
     throw NumericalFailure(name, name + " is no longer finite");
 }
 
-/// Gathers the planes of other ranks for reading whole fields; collective.
+/// Ghost planes, where the level set is valid since redistance(); or the planes and markers of all ranks where whole fields are read.
 template <int D>
-void Water<D>::gather_whole() const {
+void Water<D>::synchronize() {
     if (whole_) return;
-    if (own().distributed_storage()) return fill_ghosts();
-    auto& self = const_cast<Water&>(*this);  // only planes of other ranks are written: the state does not change
-    for (int a = 0; a < D; ++a) gather(self.state_.u[a]);
-    gather(self.state_.p);
-    self.surface_.gather_whole();
+    if (own().distributed_storage()) {
+        std::vector<Planes> all{planes_of(state_.p)};
+        for (int a = 0; a < D; ++a) all.push_back(planes_of(state_.u[a]));
+        communicator().refresh(own().partition(), all, 2, frame_.periodic(D - 1));
+    } else {
+        for (int a = 0; a < D; ++a) gather(state_.u[a]);
+        gather(state_.p);
+        surface_.gather_whole();
+        markers_.gather(frame_, all_markers_);
+    }
     whole_ = true;
-}
-
-/// With distributed storage, fills the ghost planes that are read. The level set is valid there since redistance().
-template <int D>
-void Water<D>::fill_ghosts() const {
-    auto& state = const_cast<MacState<D>&>(state_);
-    std::vector<Planes> all{planes_of(state.p)};
-    for (int a = 0; a < D; ++a) all.push_back(planes_of(state.u[a]));
-    communicator().refresh(own().partition(), all, 2, frame_.periodic(D - 1));
-    whole_ = true;
-}
-
-template <int D>
-void Water<D>::gather_markers() const {
-    if (!own().distributed() || markers_whole_ || own().distributed_storage()) return;
-    markers_.gather(frame_, all_markers_);
-    markers_whole_ = true;
 }
 
 #define WEIR_INSTANTIATE(D)                                           \
     template void Water<D>::refresh_velocity(real);                   \
     template std::array<std::int64_t, 2> Water<D>::migrate_markers(); \
     template void Water<D>::check_own() const;                        \
-    template void Water<D>::gather_whole() const;                     \
-    template void Water<D>::gather_markers() const;
+    template void Water<D>::synchronize();
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
 #undef WEIR_INSTANTIATE

@@ -10,8 +10,6 @@ using poisson::Cell;
 
 template <int D>
 FieldSet Water<D>::fields() const {
-    gather_whole();
-    gather_markers();
     FieldSet set;
     set.grid = grid_view(state_.u);
     if (own().distributed_storage()) set.cut = &own().partition();
@@ -38,7 +36,6 @@ FieldSet Water<D>::fields() const {
 
 template <int D>
 std::vector<Integral> Water<D>::integrals() const {
-    gather_whole();
     const auto [first, last] = markers_.own(frame_);
     const auto count = static_cast<real>(sum_of_ranks(own(), static_cast<std::int64_t>(last - first)));
     const std::int64_t escaped = sum_of_ranks(own(), escaped_), reseeded = sum_of_ranks(own(), reseeded_);
@@ -122,8 +119,8 @@ void Water<D>::restore(const Checkpoint& from) {
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = communicator().rank() == 0 ? counts[1] : 0, reseeded_ = communicator().rank() == 0 ? counts[2] : 0;
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
-    whole_ = !own().distributed(), markers_whole_ = false;
-    gather_whole();
+    whole_ = !own().distributed();
+    synchronize();
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
     mark_liquid_faces();

@@ -80,6 +80,7 @@ public:
     StepReport step(real dt) override;
     real advised_dt() const override;
     StepLimit stable_dt() const override;
+    void synchronize() override;
     FieldSet fields() const override;
     bool holds_own_planes() const override { return own().distributed_storage(); }
     std::vector<Integral> integrals() const override;
@@ -153,9 +154,6 @@ private:
     void refresh_velocity(real dt);
     std::array<std::int64_t, 2> migrate_markers();
     void check_own() const;
-    void gather_whole() const;
-    void fill_ghosts() const;
-    void gather_markers() const;
     void fill_solid_ghosts();
     void restore_markers(const Checkpoint& from);
     const Markers<D>& all_markers() const { return own().distributed() ? all_markers_ : markers_; }
@@ -209,9 +207,8 @@ private:
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
     int reach_ = 0;  // ghost planes that motion reads in this step
-    mutable bool whole_ = true,
-                 markers_whole_ = true;  // other ranks' or ghost planes are up to date; so is all_markers_
-    mutable Markers<D> all_markers_;     // in parallel: gathered on request
+    bool whole_ = true;  // other ranks' or ghost planes are up to date; so is all_markers_
+    Markers<D> all_markers_;             // where whole fields are read: those of all ranks
 };
 
 }  // namespace weir::water

@@ -177,7 +177,6 @@ void Water<D>::seed_markers() {
     else
         markers_.volume = frame_.cell_volume() / Markers<D>::per_cell;
     markers_.keep_held(frame_);
-    markers_whole_ = false;
 }
 
 template Water<2>::Water(const scene::Scene&, const Partition&);

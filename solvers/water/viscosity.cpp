@@ -134,7 +134,6 @@ void SurfaceViscosity<D>::reserve_unknowns() {
     }
     blocks_.reserve(blocks * static_cast<std::size_t>(own));
     block_sum_.reserve(blocks_.capacity());
-    first_block_.resize(static_cast<std::size_t>(planes) + 1);
 }
 
 /// Finds the unknowns. Faces in air have neither mass nor stress. Stores the diagonal of K in diagonal_.
@@ -149,7 +148,6 @@ void SurfaceViscosity<D>::list_unknowns() {
     blocks_.clear();
     const int planes = frame_.cells[D - 1] + 1;
     for (int k = 0; k < planes; ++k) {
-        first_block_[static_cast<std::size_t>(k)] = blocks_.size();
         for (int a = 0; a < D && frame_.own().contains(k); ++a) {
             const auto at = static_cast<std::size_t>(a);
             const auto& mass = mass_[at];
@@ -162,11 +160,10 @@ void SurfaceViscosity<D>::list_unknowns() {
             for (; begin < list.size(); begin += Block::most) blocks_.push_back({a, begin, std::min(list.size(), begin + Block::most)});
         }
     }
-    first_block_.back() = blocks_.size();
     block_sum_.resize(blocks_.size());
 }
 
-/// Sums blocks of a plane, then planes, in order: independent of the threads and of the partition.
+/// A block lies within a plane: the same terms for any number of threads and any partition.
 template <int D>
 real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
     parallel_for(0, static_cast<int>(blocks_.size()), [&](int i) {
@@ -176,11 +173,9 @@ real SurfaceViscosity<D>::dot(const Faces& p, const Faces& q) const {
         for (std::size_t k = block.begin; k < block.end; ++k) part += p[a](unknown_[a][k]) * q[a](unknown_[a][k]);
         block_sum_[static_cast<std::size_t>(i)] = part;
     });
-    return plane_sum(frame_.own(), frame_.cells[D - 1] + 1, [&](int k) {
-        const auto first = block_sum_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(k)]);
-        const auto last = block_sum_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(k) + 1]);
-        return std::accumulate(first, last, real{0});
-    });
+    ExactSum sum;
+    sum.add(std::span<const real>(block_sum_));
+    return sum_of_ranks(frame_.own(), sum).value();
 }
 
 template <int D>
@@ -333,7 +328,7 @@ std::size_t SurfaceViscosity<D>::bytes() const {
     for (const Faces* faces : {&mass_, &x_, &r_, &p_, &ap_, &diagonal_, &with_pressure_})
         for (const auto& grid : *faces) total += grid.bytes();
     for (const auto& list : unknown_) total += list.capacity() * sizeof(Index<D>);
-    total += blocks_.capacity() * sizeof(Block) + first_block_.capacity() * sizeof(std::size_t) + block_sum_.capacity() * sizeof(real);
+    total += blocks_.capacity() * sizeof(Block) + block_sum_.capacity() * sizeof(real);
     return total + (bodies_ ? bodies_->bytes() : 0);
 }
 

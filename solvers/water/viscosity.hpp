@@ -99,7 +99,6 @@ private:
     Faces with_pressure_;                           // dt a
     std::array<std::vector<Index<D>>, D> unknown_;  // faces reached by liquid or its stress, in the order of the grid
     std::vector<Block> blocks_;                     // plane by plane, within each axis by axis
-    std::vector<std::size_t> first_block_;          // of each plane of faces, and the end of the last
     mutable std::vector<real> block_sum_;
 };
 

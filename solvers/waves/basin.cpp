@@ -1,6 +1,6 @@
 #include "waves/basin.hpp"
 
-#include "parallel/rank_ordered.hpp"
+#include "core/exact_sum.hpp"
 
 #include <cmath>
 
@@ -86,14 +86,13 @@ void Basin::fill_layer(real y, std::array<real*, 3> out, std::size_t stride) {
 /// reduction.
 template <class Sum, class F>
 Sum Basin::sum_at(const F& add) const {
-    const auto add_held = [&](Sum& sum) {
-        for (int m = series_.held().begin; m < series_.held().end; ++m)
-            for (int n = m == 0 ? 1 : 0; n < nz_; ++n) add(sum, m, n);
-    };
-    if (series_.in_parts()) return rank_ordered_reduction(Sum{}, add_held);
-    Sum sum{};
-    add_held(sum);
-    return sum;
+    ExactSums<Sum> sums;
+    for (int m = series_.held().begin; m < series_.held().end; ++m) {
+        Sum column{};
+        for (int n = m == 0 ? 1 : 0; n < nz_; ++n) add(column, m, n);
+        sums.add(column);
+    }
+    return sum_of_ranks(series_.in_parts() ? series_.columns() : OwnPlanes{}, sums).value();
 }
 
 Vec<3> Basin::velocity_of(int m, int n, const Vec<3>& at) const {

@@ -20,6 +20,8 @@ public:
 
     /// The columns m of modes that this rank stores, n fastest; and whether other ranks store the rest.
     const PlaneRange& held() const { return held_; }
+    /// The columns of modes that this rank computes.
+    const OwnPlanes& columns() const { return transposition_.columns(); }
     bool in_parts() const { return in_parts_; }
     std::size_t size() const { return static_cast<std::size_t>(held_.end - held_.begin) * static_cast<std::size_t>(nz_); }
     std::size_t at(int m, int n) const {

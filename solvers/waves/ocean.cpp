@@ -1,6 +1,6 @@
 #include "waves/ocean.hpp"
 
-#include "parallel/rank_ordered.hpp"
+#include "core/exact_sum.hpp"
 #include "waves/random.hpp"
 
 #include <cmath>
@@ -208,23 +208,21 @@ void Ocean::fill_water(const Box& box, real level, std::array<Values, 3>& out) {
 }
 
 /// add(sum, wave, index, e^(i k . x), doubled where the half plane contains only one of k and -k) for each wave, in order: the real part of
-/// the sum is the field at (x, z). With distributed storage the call is collective: a rank-ordered reduction.
+/// the sum is the field at (x, z): the exact sum of those of the columns. With distributed storage the call is collective.
 template <class Sum, class F>
 Sum Ocean::sum_at(real x, real z, const F& add) const {
     std::vector<Complex> along_z(static_cast<std::size_t>(plane_.nz));
     for (int n = 0; n < plane_.nz; ++n) along_z[static_cast<std::size_t>(n)] = std::exp(i * (plane_.signed_n(n) * dkz_ * (z - first_z_)));
-    const auto add_held = [&](Sum& sum) {
-        for (int m = plane_.held.begin; m < plane_.held.end; ++m) {
-            const Complex along_x = (m == 0 ? 1.0 : 2.0) * std::exp(i * (m * dkx_ * (x - first_x_)));
-            for (int n = 0; n < plane_.nz; ++n)
-                if (const Wave w = wave(m, n); w.k > 0) add(sum, w, plane_.at(m, n), along_x * along_z[static_cast<std::size_t>(n)]);
-        }
-    };
-    if (!plane_.whole()) return rank_ordered_reduction(Sum{}, add_held);
-    turn_all();
-    Sum sum{};
-    add_held(sum);
-    return sum;
+    if (plane_.whole()) turn_all();
+    ExactSums<Sum> sums;
+    for (int m = plane_.held.begin; m < plane_.held.end; ++m) {
+        const Complex along_x = (m == 0 ? 1.0 : 2.0) * std::exp(i * (m * dkx_ * (x - first_x_)));
+        Sum column{};
+        for (int n = 0; n < plane_.nz; ++n)
+            if (const Wave w = wave(m, n); w.k > 0) add(column, w, plane_.at(m, n), along_x * along_z[static_cast<std::size_t>(n)]);
+        sums.add(column);
+    }
+    return sum_of_ranks(plane_.whole() ? OwnPlanes{} : synthesis_.columns(), sums).value();
 }
 
 Motion Ocean::motion(real x, real z) const {

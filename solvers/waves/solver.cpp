@@ -76,7 +76,7 @@ std::vector<Values*> Waves::shared() {
 }
 
 /// Halo exchange, or all-gather without distributed storage, before fields are read from outside; collective.
-void Waves::refresh_planes() {
+void Waves::synchronize() {
     if (ghosts_filled_) return;
     if (box_.own.distributed_storage()) {
         std::vector<Planes> all;
@@ -134,7 +134,6 @@ void Waves::make_foam() {
 }
 
 FieldSet Waves::fields() const {
-    const_cast<Waves&>(*this).refresh_planes();  // only planes of other ranks are written: the state does not change
     FieldSet set;
     if (box_.own.distributed_storage()) set.cut = &box_.own.partition();
     GridView& grid = set.grid;

@@ -20,6 +20,7 @@ public:
     real advised_dt() const override { return end_; }
     bool checks_itself() const override { return true; }
     std::string concern() const override;
+    void synchronize() override;
     FieldSet fields() const override;
     bool holds_own_planes() const override { return box_.own.distributed_storage(); }
     /// "position" is that of the particle with the given rest position.
@@ -38,7 +39,6 @@ public:
 private:
     void set_time(real t);
     void compute();
-    void refresh_planes();
     std::vector<Values*> shared();
     void place_surface();
     void fill_water();

@@ -26,30 +26,35 @@ Name split(std::string_view name) {
     return {std::string(name.substr(0, dot)), std::string(name.substr(dot + 1))};
 }
 
-/// Running sums of one norm.
+/// Running sums of one norm; sums of several ranks may be added.
 struct NormSum {
-    Norm norm;
-    real sum = 0, weight = 0;
+    Norm norm = Norm::linf;
+    ExactSum sum{}, weight{};
+    real most = 0;  // NaN if any value is
     void add(real value, real w) {
-        weight += w;
         const real a = std::abs(value);
-        if (norm == Norm::linf)
-            sum = (a > sum || std::isnan(a)) ? a : sum;  // a NaN stays, and fails
-        else
-            sum += w * (norm == Norm::l1 ? a : a * a);
+        if (norm == Norm::linf) return see(a);
+        weight.add(w);
+        sum.add(w * (norm == Norm::l1 ? a : a * a));
     }
-    real mean() const { return norm == Norm::linf || weight == 0 ? sum : sum / weight; }
-    /// Adds the mean of another component.
-    void join(const NormSum& other) {
-        if (norm == Norm::linf)
-            add(other.sum, 1);
-        else
-            sum += other.mean();
+    void add(const NormSum& other) {
+        norm = other.norm;
+        sum.add(other.sum), weight.add(other.weight);
+        see(other.most);
     }
+    real mean() const {
+        if (norm == Norm::linf) return most;
+        const real all = weight.value();
+        return all == 0 ? sum.value() : sum.value() / all;
+    }
+
+private:
+    void see(real a) { most = (a > most || std::isnan(a)) && !std::isnan(most) ? a : most; }
 };
 
 struct Component {
     NormSum error, scale;
+    void add(const Component& other) { error.add(other.error), scale.add(other.scale); }
 };
 
 /// f(x, weight, i) for each sample of one component where it lives: cell centres, faces, or particles, which weigh all the same. Of this
@@ -76,22 +81,22 @@ Component component_error(const RunRecord& run, const Reference& reference, cons
     struct Means {
         real value, exact, weight;
     };
-    const Means all = sim::added_by_owners(run.fields, view, Means{0, 0, 0}, [&](Means& m) {
-        for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
-            if (covered(x)) m.value += w * data[i], m.exact += w * exact(x), m.weight += w;
-        });
+    ExactSums<Means> means;
+    for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
+        if (covered(x)) means.add({w * data[i], w * exact(x), w});
     });
+    const Means all = sim::sum_of_owners(run.fields, view, means).value();
     if (all.weight == 0) throw BadInput(fmt::format("the reference of \"{}\" covers no sample of the run", view.name));
     const bool keep = reference.up_to_a_constant.count(view.name) == 0;
     const real value_mean = keep ? 0 : all.value / all.weight, exact_mean = keep ? 0 : all.exact / all.weight;
-    return sim::added_by_owners(run.fields, view, Component{{norm}, {norm}}, [&](Component& sums) {
-        for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
-            if (!covered(x)) return;
-            const real truth = exact(x) - exact_mean;
-            sums.error.add(data[i] - value_mean - truth, w);
-            sums.scale.add(truth, w);
-        });
+    Component sums{{norm}, {norm}};
+    for_each_sample_of(run, view, c, [&](const Vec<3>& x, real w, std::size_t i) {
+        if (!covered(x)) return;
+        const real truth = exact(x) - exact_mean;
+        sums.error.add(data[i] - value_mean - truth, w);
+        sums.scale.add(truth, w);
     });
+    return sim::sum_of_owners(run.fields, view, sums);
 }
 
 real statistic(const Curve& s, const std::string& operation) {
@@ -127,11 +132,10 @@ bool has_series(const RunRecord& run, const std::string& name) {
 
 real largest(const RunRecord& run, std::string_view field) {
     const FieldView& view = run.field(field);
-    const auto add = [&](NormSum& sum) {
-        for (std::size_t c = 0; c < view.data.size(); ++c)
-            for (const real v : sim::own_values(run.fields, view, c)) sum.add(v, 1);
-    };
-    return sim::added_by_owners(run.fields, view, NormSum{Norm::linf}, add).mean();
+    NormSum most{Norm::linf};
+    for (std::size_t c = 0; c < view.data.size(); ++c)
+        for (const real v : sim::own_values(run.fields, view, c)) most.add(v, 1);
+    return sim::sum_of_owners(run.fields, view, most).mean();
 }
 
 real field_metric(const Name& name, const RunRecord& run, const Reference& reference) {
@@ -157,13 +161,14 @@ FieldError field_error(const RunRecord& run, const Reference& reference, std::st
     const bool scalar = view.components() == 1 && view.where != Where::face;
     const ScalarField* one = scalar ? &reference.scalar(name) : nullptr;
     const VectorField* many = scalar ? nullptr : &reference.vector(name);
-    NormSum error{norm}, scale{norm};
+    real error = 0, scale = 0;  // of the components: largest, or sum of means
+    const auto join = [&](real& all, real mean) { all = norm != Norm::linf ? all + mean : mean > all || std::isnan(mean) ? mean : all; };
     for (int c = 0; c < view.components(); ++c) {
         const auto exact = [&](const Vec<3>& x) { return scalar ? (*one)(x, run.time) : (*many)(x, run.time)[c]; };
         const Component sums = component_error(run, reference, view, c, norm, exact);
-        error.join(sums.error), scale.join(sums.scale);
+        join(error, sums.error.mean()), join(scale, sums.scale.mean());
     }
-    const auto finish = [&](const NormSum& s) { return norm == Norm::l2 ? std::sqrt(s.sum) : s.sum; };
+    const auto finish = [&](real all) { return norm == Norm::l2 ? std::sqrt(all) : all; };
     return {finish(error), finish(scale)};
 }
 

@@ -99,7 +99,7 @@ RunWatch::RunWatch(Simulation& simulation, const std::vector<const Metric*>& met
 
 void RunWatch::remember(const StepReport& report, double seconds) {
     Moment moment{.step = simulation_->steps(), .time = simulation_->time(), .seconds = seconds, .report = report};
-    record_.integrals = simulation_->solver().integrals();
+    record_.integrals = simulation_->integrals();
     for (const Integral& i : record_.integrals) moment.integrals.push_back(i.value);
     if (!observers_.empty()) {
         const FieldSet fields = simulation_->fields();

@@ -201,7 +201,7 @@ std::pair<real, real> densities(const Simulation& simulation) {
 }
 
 real integral_of(const Simulation& simulation, const std::string& name) {
-    for (const Integral& i : simulation.solver().integrals())
+    for (const Integral& i : simulation.integrals())
         if (i.name == name) return i.value;
     throw BadInput(fmt::format("the solver shows no integral \"{}\"", name));
 }
@@ -253,7 +253,7 @@ real value_of(const std::string& name, const Simulation& simulation, const StepR
     if (const auto minus = name.find('-'); minus != std::string::npos)
         return value_of(name.substr(0, minus), simulation, report) - value_of(name.substr(minus + 1), simulation, report);
     if (const StepQuantity* quantity = find_step_quantity(name)) return quantity->value(report);
-    for (const Integral& i : simulation.solver().integrals())
+    for (const Integral& i : simulation.integrals())
         if (i.name == name) return i.value;
     if (const auto value = counted(name, simulation, report)) return *value;
     throw BadInput(fmt::format("there is no integral or value of a step report named \"{}\"", name));

@@ -86,7 +86,7 @@ std::vector<Integral> integrals(const MacState<D>& s) {
 }
 
 template <int D>
-void vorticity(const MacState<D>& s, std::vector<Grid<real, D>>& omega) {
+void vorticity(const MacState<D>& s, const Extent<D>& cells, std::vector<Grid<real, D>>& omega) {
     const auto centre = [&](int a, const Index<D>& I) { return 0.5 * (s.u[a](I) + s.u[a](I + e<D>(a))); };
     const auto slope = [&](int a, int b, const Index<D>& I) {
         Index<D> lo = I, hi = I;
@@ -98,7 +98,7 @@ void vorticity(const MacState<D>& s, std::vector<Grid<real, D>>& omega) {
     for (std::size_t c = 0; c < omega.size(); ++c) {
         if (omega[c].empty()) omega[c] = Grid<real, D>(s.extent());
         const int a = D == 2 ? 0 : (static_cast<int>(c) + 1) % 3, b = D == 2 ? 1 : (static_cast<int>(c) + 2) % 3;
-        for_each_cell(s.extent(), [&](const Index<D>& I) { omega[c](I) = slope(b, a, I) - slope(a, b, I); });
+        for_each_cell(cells, [&](const Index<D>& I) { omega[c](I) = slope(b, a, I) - slope(a, b, I); });
     }
 }
 
@@ -133,7 +133,7 @@ FieldSet field_set(const MacState<D>& s) {
     template real enstrophy(const MacState<D>&);                              \
     template real integral(const MacState<D>&, const Grid<real, D>&);         \
     template std::vector<Integral> integrals(const MacState<D>&);             \
-    template void vorticity(const MacState<D>&, std::vector<Grid<real, D>>&); \
+    template void vorticity(const MacState<D>&, const Extent<D>&, std::vector<Grid<real, D>>&); \
     template GridView grid_view(const MacVelocity<D>&);                       \
     template FieldSet field_set(const MacState<D>&);
 WEIR_INSTANTIATE(2)

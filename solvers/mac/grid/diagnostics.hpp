@@ -24,7 +24,7 @@ std::vector<Integral> integrals(const MacState<D>& s);
 
 /// Vorticity at cell centres [1/s]: one component in 2D, three in 3D; one-sided at the sides of the domain.
 template <int D>
-void vorticity(const MacState<D>& s, std::vector<Grid<real, D>>& omega);
+void vorticity(const MacState<D>& s, const Extent<D>& cells, std::vector<Grid<real, D>>& omega);
 
 template <int D>
 GridView grid_view(const MacVelocity<D>& u);

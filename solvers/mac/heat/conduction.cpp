@@ -35,7 +35,7 @@ Boundary<D> without_values(Boundary<D> boundary) {
 /// max_over, row by row.
 template <int D, class F>
 real max_of_rows(const Index<D>& extent, F&& f) {
-    return ordered_max(extent[D - 1], [&](int outer) {
+    return parallel_max(extent[D - 1], [&](int outer) {
         Index<D> I{};
         I[D - 1] = outer;
         real most = -infinity;

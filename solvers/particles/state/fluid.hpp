@@ -121,7 +121,7 @@ void Fluid<D>::remove_if(F&& gone) {
 template <class F>
 real block_sum(int count, F&& f) {
     constexpr int block = 2048;
-    return ordered_sum((count + block - 1) / block, [&](int b) {
+    return exact_sum((count + block - 1) / block, [&](int b) {
         real sum = 0;
         for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) sum += f(i);
         return sum;
@@ -168,7 +168,7 @@ template <class F>
 real block_max(int count, F&& f) {
     constexpr int block = 2048, lanes = 8;
     if (count == 0) return 0;
-    return ordered_max((count + block - 1) / block, [&](int b) {
+    return parallel_max((count + block - 1) / block, [&](int b) {
         std::array<real, lanes> largest;
         largest.fill(-infinity);
         const auto meet = [&](std::size_t l, real value) { largest[l] = value > largest[l] || value != value ? value : largest[l]; };

@@ -192,7 +192,7 @@ Pairs::NeighbourCounts Pairs::neighbour_counts() const {
     const int counted = counts.empty() ? 0 : own.count();
     std::vector<real> sums{block_sum(counted, count)};  // of integers, whose sum is independent of the order
     if (shares_.several()) sums = of_ranks(sums[0]);
-    return {detail::sum_in_order(sums, static_cast<int>(sums.size())) / total_, largest(block_max(counted, count))};
+    return {std::accumulate(sums.begin(), sums.end(), 0.0) / total_, largest(block_max(counted, count))};
 }
 
 std::size_t Pairs::bytes() const {

@@ -27,6 +27,7 @@ bool is_slow(const Report& report, real norm, real tolerance) {
 template <int D>
 bool GeometricCg<D>::setup(const Natural<D>& problem) {
     if (!hierarchy_.build(problem)) return false;
+    own_ = problem.own();
     const Layout<D>& at = hierarchy_.finest().at;
     const std::size_t entries = at.entries(), skip = static_cast<std::size_t>(at.stride + lanes);
     const std::size_t bytes = 2 * Arena::need<double>(entries) + 2 * Arena::need<float>(entries);
@@ -42,19 +43,20 @@ bool GeometricCg<D>::setup(const Natural<D>& problem) {
     return true;
 }
 
-/// In parallel: including the planes of other ranks.
 template <int D>
-void GeometricCg<D>::gather_sums() {
-    const Level<D>& finest = hierarchy_.finest();
-    if (!finest.cut.empty()) communicator().gather(finest.cut, {sums_.data(), sizeof(PlaneSums), finest.at.planes()});
-}
-
-template <int D>
-template <class F>
-real GeometricCg<D>::total(F&& of) const {
-    real sum = 0;
-    for (const PlaneSums& plane : sums_) sum += of(plane);
-    return sum;
+template <class... Of>
+std::array<real, sizeof...(Of)> GeometricCg<D>::totals(Of&&... of) const {
+    using Sums = ExactSums<std::array<real, sizeof...(Of)>>;
+    auto& part = detail::reduction_scratch(sums_.size());
+    const int first = own_.lower(0), last = own_.upper(static_cast<int>(sums_.size()));
+    Sums sums;
+    std::size_t i = 0;
+    const auto add = [&](auto&& quantity) {
+        for (int q = first; q < last; ++q) part[static_cast<std::size_t>(q - first)] = quantity(sums_[static_cast<std::size_t>(q)]);
+        sums.of(i++).add(std::span<const real>(part).first(static_cast<std::size_t>(last - first)));
+    };
+    (add(of), ...);
+    return sum_of_ranks(own_, sums).value();
 }
 
 /// x = p in packed order.
@@ -80,8 +82,7 @@ real GeometricCg<D>::begin_at_zero(const Natural<D>& problem, const Grid<real, D
         residual_plane(problem, nullptr, b, q);
         start_plane(hierarchy_.finest(), q);
     });
-    gather_sums();
-    return total([](const PlaneSums& s) { return s.rr; });
+    return totals([](const PlaneSums& s) { return s.rr; })[0];
 }
 
 /// x = p; returns r·r.
@@ -90,8 +91,7 @@ real GeometricCg<D>::begin_at(const Natural<D>& problem, const Grid<real, D>& p,
     at_zero_ = false;
     gather(problem, p);
     for_each_plane(problem.own(), 0, problem.planes(), [&](int q) { residual_plane(problem, p.data(), b, q); });
-    gather_sums();
-    return total([](const PlaneSums& s) { return s.rr; });
+    return totals([](const PlaneSums& s) { return s.rr; })[0];
 }
 
 /// p = x and r = b − A p, after before(plane); returns r·r. Optionally the next cycle begins in the same sweep.
@@ -115,8 +115,7 @@ real GeometricCg<D>::replace_residual(const Natural<D>& problem, Grid<real, D>& 
     else
         VCycle<D>::run(finest, VCycle<D>::wavefront(finest, 2, false), stages, exchange);
     at_zero_ = false;
-    gather_sums();
-    return total([](const PlaneSums& s) { return s.rr; });
+    return totals([](const PlaneSums& s) { return s.rr; })[0];
 }
 
 /// The downward half of a cycle for an r that was not computed by an iteration.
@@ -131,9 +130,8 @@ void GeometricCg<D>::finish_cycle() {
     VCycle<D> cycle(hierarchy_);
     cycle.below(0);
     cycle.up(0, 2, [&](int stage, int q) { stage == 0 ? last_half_sweep(q) : black_products(q); });
-    gather_sums();
-    gamma_ = total([](const PlaneSums& s) { return s.ru; });
-    delta_ = total([](const PlaneSums& s) { return s.uAu; });
+    const auto [gamma, delta] = totals([](const PlaneSums& s) { return s.ru; }, [](const PlaneSums& s) { return s.uAu; });
+    gamma_ = gamma, delta_ = delta;
 }
 
 template <int D>
@@ -143,8 +141,7 @@ real GeometricCg<D>::iterate_down(real alpha, real beta) {
         .down(
             0, 2, [&](int stage, int q) { stage == 0 ? turn_plane(q, beta) : advance_plane(q, alpha); }, [&](int) { finest.refresh(p_); });
     at_zero_ = false;
-    gather_sums();
-    return total([](const PlaneSums& s) { return s.rr; });
+    return totals([](const PlaneSums& s) { return s.rr; })[0];
 }
 
 template <int D>
@@ -202,8 +199,10 @@ bool GeometricCg<D>::solve(const Natural<D>& problem, Grid<real, D>& p, const Gr
     else
         problem.find_means(p);
     problem.subtract_means(p);
-    report.residual_max = 0;
-    for (const PlaneSums& plane : sums_) report.residual_max = std::max(report.residual_max, plane.largest);
+    real most = 0;
+    for (int q = own_.lower(0); q < own_.upper(static_cast<int>(sums_.size())); ++q)
+        most = std::max(most, sums_[static_cast<std::size_t>(q)].largest);
+    report.residual_max = largest_of_ranks(own_, most);
     return true;
 }
 

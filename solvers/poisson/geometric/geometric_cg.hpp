@@ -61,9 +61,9 @@ private:
     void advance_plane(int q, real alpha);
     void black_products(int q);
     void last_half_sweep(int q);
-    void gather_sums();
-    template <class F>
-    real total(F&& of) const;
+    /// Exact sums of quantities of(plane) over all planes, of all ranks in one message.
+    template <class... Of>
+    std::array<real, sizeof...(Of)> totals(Of&&... of) const;
 
     bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report, real b_norm);
     void see_answer();
@@ -75,6 +75,7 @@ private:
     Coloured<float> p_{};
     bool windowed_ = false;
     bool at_zero_ = false;  // x is zero, whatever its memory contains
+    OwnPlanes own_{};  // of the problem
     std::vector<PlaneSums> sums_;
     real gamma_ = 0, delta_ = 0;
 };

@@ -42,7 +42,7 @@ public:
     std::int64_t fluid_cells() const { return fluid_cells_; }
     std::size_t bytes() const;
 
-    /// Means of the values over closed components, from sums over runs, added in the order of the runs.
+    /// Means of the values over closed components: exact sums of those of their runs.
     void find_means(const Grid<real, D>& values) const;
     void clear_means() const { std::fill(mean_.begin(), mean_.end(), 0.0); }
     /// The same in two parts, for callers that already loop over the values: sums over the runs of every row, then means.
@@ -86,7 +86,7 @@ private:
     void gather_open();
     /// In parallel, receives the values of the other ranks' runs.
     template <class T>
-    void gather_by_runs(T* values) const {
+    void gather_by_runs(T* values) {
         first_runs_.clear();
         for (const int plane : own_.partition().at) {
             const std::size_t row = static_cast<std::size_t>(plane) * static_cast<std::size_t>(rows_in_plane());
@@ -96,7 +96,6 @@ private:
     }
     void find_closed();
     void mark_open();
-    void gather_sums() const;
     /// f(row), threaded over all rows; in parallel, over those of this rank's planes.
     template <class F>
     void for_each_row_of_own(F&& f) const {
@@ -121,8 +120,9 @@ private:
     int closed_ = 0;
     std::int64_t fluid_cells_ = 0;
     std::vector<real> size_;                       // cells of each closed component
-    mutable std::vector<real> mean_, sum_;         // of components, of runs
-    mutable std::vector<std::size_t> first_runs_;  // per rank
+    mutable std::vector<real> mean_, sum_;         // of components, of this rank's runs
+    mutable std::vector<ExactSum> component_sum_;
+    std::vector<std::size_t> first_runs_;  // per rank
     std::vector<int> root_, number_;               // scratch of find_closed: root of each run, component of each root
     std::vector<char> open_;
 };

@@ -84,20 +84,17 @@ void Natural<D>::sum_row(int row, const real* values) const {
     }
 }
 
-/// In parallel, receives the sums of the other ranks' runs.
-template <int D>
-void Natural<D>::gather_sums() const {
-    if (!own_.distributed() || closed_ == 0) return;
-    gather_by_runs(sum_.data());
-}
-
 template <int D>
 void Natural<D>::means_from_sums() const {
-    gather_sums();
     clear_means();
-    for (std::size_t k = 0; k < runs_.size(); ++k)
-        if (runs_[k].component >= 0) mean_[static_cast<std::size_t>(runs_[k].component)] += sum_[k];
-    for (std::size_t c = 0; c < mean_.size(); ++c) mean_[c] /= size_[c];
+    if (closed_ == 0) return;
+    component_sum_.assign(mean_.size(), ExactSum{});
+    const auto first = static_cast<std::size_t>(run_start_[static_cast<std::size_t>(planes_.begin * rows_in_plane())]);
+    const auto last = static_cast<std::size_t>(run_start_[static_cast<std::size_t>(planes_.end * rows_in_plane())]);
+    for (std::size_t k = first; k < last; ++k)
+        if (runs_[k].component >= 0) component_sum_[static_cast<std::size_t>(runs_[k].component)].add(sum_[k]);
+    sums_of_ranks(own_, component_sum_);
+    for (std::size_t c = 0; c < mean_.size(); ++c) mean_[c] = component_sum_[c].value() / size_[c];
 }
 
 template <int D>

@@ -26,7 +26,7 @@ void for_each_block(std::size_t n, F&& f) {
 /// The sum of f(begin, end) over the blocks of [0, n).
 template <class F>
 real sum_of_blocks(std::size_t n, F&& f) {
-    return ordered_sum(static_cast<int>((n + block_size - 1) / block_size), [&](int k) {
+    return exact_sum(static_cast<int>((n + block_size - 1) / block_size), [&](int k) {
         const std::size_t begin = static_cast<std::size_t>(k) * block_size;
         return f(begin, std::min(n, begin + block_size));
     });

@@ -15,14 +15,18 @@ namespace {
 real sum_of(const std::vector<real>& terms) {
     ExactSum sum;
     for (const real term : terms) sum.add(term);
-    return sum.value();
+    ExactSum together;
+    together.add(std::span<const real>(terms));
+    const real a = sum.value(), b = together.value();
+    EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << a << " one by one, " << b << " together";
+    return a;
 }
 
 TEST(ExactSum, KeepsWhatAFloatingPointSumLoses) {
     EXPECT_EQ(sum_of({}), 0);
-    EXPECT_EQ(sum_of({1e300, 1, -1e300}), 1);                      // 600 decades apart
-    EXPECT_EQ(sum_of({1e308, 1e308, -1e308}), 1e308);              // beyond the range in between
-    EXPECT_EQ(sum_of({1e-320, -5e-324}), 1e-320 - 5e-324);         // subnormal
+    EXPECT_EQ(sum_of({1e300, 1, -1e300}), 1);                                  // 600 decades apart
+    EXPECT_EQ(sum_of({1e308, 1e308, -1e308}), 1e308);                          // beyond the range in between
+    EXPECT_EQ(sum_of({1e-320, -5e-324}), 1e-320 - 5e-324);                     // subnormal
     EXPECT_EQ(sum_of(std::vector<real>(100000, 0.1)), 10000.000000000000555);  // 1e5 times the double nearest to 0.1
 }
 
@@ -51,6 +55,9 @@ TEST(ExactSum, DoesNotDependOnOrderOrDistribution) {
         for (const auto& part : parts) all.add(part);
         EXPECT_EQ(all.value(), sum);
     }
+    ExactSum together;
+    together.add(std::span<const real>(terms));
+    EXPECT_EQ(together.value(), sum);
     terms.push_back(-sum);  // what is left is at most half a unit in the last place of the sum
     EXPECT_LE(std::abs(sum_of(terms)), 0.5 * std::numeric_limits<real>::epsilon() * std::abs(sum));
 }
