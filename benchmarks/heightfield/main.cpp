@@ -2,6 +2,7 @@
 //   bench_heightfield [--csv] [--cells N] [--threads N]
 #include "core/parallel.hpp"
 #include "heightfield/solver.hpp"
+#include "parallel/partition.hpp"
 
 #include <fmt/format.h>
 

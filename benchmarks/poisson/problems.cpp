@@ -103,7 +103,7 @@ Problem<D> make(const std::string& name, int n) {
     const ::bench::PoissonProblem source = ::bench::make_problem(wavy, D, n);
     Problem<D> problem;
     auto& A = problem.A;
-    A.cells = Grid<Cell, D>(Index<D>::constant(n));
+    A.cells = Grid<Cell, D>(replicated(Index<D>::constant(n)));
     for (std::size_t i = 0; i < A.cells.size(); ++i) A.cells[i] = source.fluid[i] ? Cell::fluid : Cell::air;
     problem.b = Grid<real, D>(A.cells.extent());
     std::copy(source.b.begin(), source.b.end(), problem.b.data());

@@ -37,9 +37,9 @@ TEST_IN_2D_AND_3D("walls, slits, blocks and face fractions of four magnitudes ta
 }
 
 TEST_IN_2D_AND_3D("thin domains, lines of cells and flat cells take at most 16 iterations") {
-    std::vector<Index<D>> shapes;
+    std::vector<Extent<D>> shapes;
     for (const int n : {1, 2, 3, 7}) {
-        Index<D> extent = Index<D>::constant(D == 2 ? 300 : 60);
+        Extent<D> extent(Index<D>::constant(D == 2 ? 300 : 60));
         extent[0] = n;
         shapes.push_back(extent);
         std::swap(extent[0], extent[D - 1]);
@@ -61,7 +61,7 @@ TEST_IN_2D_AND_3D("thin domains, lines of cells and flat cells take at most 16 i
 TEST_IN_2D_AND_3D("periodic boxes of even, odd and prime lengths take at most 16 iterations") {
     for (const int n : {48, 50, 53}) {
         poisson::Operator<D> A;
-        A.cells = Grid<poisson::Cell, D>(Index<D>::constant(n), poisson::Cell::fluid);
+        A.cells = Grid<poisson::Cell, D>(replicated(Index<D>::constant(n)), poisson::Cell::fluid);
         A.periodic.fill(true);
         Grid<real, D> p(A.cells.extent()), b(A.cells.extent());
         for (std::size_t i = 0; i < b.size(); ++i) b[i] = std::sin(0.37 * static_cast<real>(i * i % 1001));

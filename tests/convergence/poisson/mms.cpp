@@ -76,7 +76,7 @@ const std::vector<Solution>& solutions() {
 template <int D>
 poisson::Operator<D> unit_box(int n, bool dirichlet) {
     poisson::Operator<D> A;
-    A.cells = Grid<poisson::Cell, D>(Index<D>::constant(n), poisson::Cell::fluid);
+    A.cells = Grid<poisson::Cell, D>(replicated(Index<D>::constant(n)), poisson::Cell::fluid);
     for (int a = 0; dirichlet && a < D; ++a) {
         auto& w = A.weight[static_cast<std::size_t>(a)];
         w = Grid<real, D>(A.cells.extent() + e<D>(a), 1);

@@ -1,6 +1,7 @@
 #include "effects/audit/audit.hpp"
 
 #include "effects/audit/heap.hpp"
+#include "parallel/partition.hpp"
 #include "validation/cost/effect_scene.hpp"
 
 #include <fmt/format.h>

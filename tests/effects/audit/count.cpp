@@ -6,6 +6,7 @@
 #include "core/parallel.hpp"
 #include "effects/audit/instructions.hpp"
 #include "effects/audit/leaks.hpp"
+#include "parallel/partition.hpp"
 #include "sim/registry.hpp"
 #include "validation/cost/effect_scene.hpp"
 

@@ -6,6 +6,7 @@
 #include "effects/audit/audit.hpp"
 #include "effects/audit/heap.hpp"
 #include "effects/audit/leaks.hpp"
+#include "parallel/partition.hpp"
 #include "support/test.hpp"
 #include "validation/cost/effect_scene.hpp"
 

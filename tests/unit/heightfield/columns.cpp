@@ -48,8 +48,8 @@ TEST_IN_2D_AND_3D("the fast sweep is the plain one, bit for bit where the pull v
     for (std::size_t c = 0; c < start.size(); ++c)
         start[c] = std::sin(0.7 * static_cast<real>(c)), rate[c] = std::cos(1.3 * static_cast<real>(c));
     Stiffness k;
-    k.x = Field(Index<2>{{plane.nx + 1, plane.nz}});
-    k.z = Field(Index<2>{{plane.nx, plane.nz + 1}});
+    k.x = Field(replicated(Index<2>{{plane.nx + 1, plane.nz}}));
+    k.z = Field(replicated(Index<2>{{plane.nx, plane.nz + 1}}));
     for (std::size_t f = 0; f < k.x.size(); ++f) k.x[f] = 1 + 0.5 * std::sin(static_cast<real>(f));
     for (std::size_t f = 0; D == 3 && f < k.z.size(); ++f) k.z[f] = 1 + 0.5 * std::cos(static_cast<real>(f));
     for (const bool periodic : {false, true})

@@ -39,7 +39,7 @@ TEST_IN_2D_AND_3D("ghost layers are what their rules say, corners included, prof
     const Kind kinds[] = {Kind::dirichlet, Kind::neumann, Kind::odd_about_node, Kind::constant_beyond_node, Kind::periodic};
     for (int node_axis = -1; node_axis < D; ++node_axis)
         for (std::size_t turn = 0; turn < std::size(kinds); ++turn) {
-            Index<D> extent = Index<D>::constant(5);
+            Extent<D> extent(Index<D>::constant(5));
             for (int d = 0; d < D; ++d) extent[d] += d;
             if (node_axis >= 0) ++extent[node_axis];
             Boundary<D> boundary;
@@ -58,7 +58,8 @@ TEST_IN_2D_AND_3D("ghost layers are what their rules say, corners included, prof
             fill(fast, inner, boundary);
             for_each_cell(extent, [&](const Index<D>& I) { plain(I) = inner(I); });
             for (int axis = 0; axis < D; ++axis) {
-                Index<D> lo{}, hi = extent, nodes = extent;
+                Index<D> lo{}, nodes = extent;
+                Extent<D> hi = extent;
                 for (int b = 0; b < axis; ++b) lo[b] = -ghost_layers, hi[b] += ghost_layers;
                 hi[axis] = nodes[axis] = 1;
                 for_each_in(lo, hi, [&](const Index<D>& I) {

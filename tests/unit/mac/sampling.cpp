@@ -11,7 +11,7 @@ namespace {
 /// A field of one kind of node filled with f(node position in cells).
 template <int D, class F>
 Padded<D> filled(int node_axis, F f) {
-    Index<D> extent = Index<D>::constant(8);
+    Extent<D> extent(Index<D>::constant(8));
     if (node_axis >= 0) ++extent[node_axis];
     Padded<D> q(extent);
     const Index<D> ghosts = Index<D>::constant(ghost_layers);

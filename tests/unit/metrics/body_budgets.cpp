@@ -1,4 +1,5 @@
 // Budgets of fluid and bodies, on histories whose sums are known.
+#include "parallel/partition.hpp"
 #include "sim/registry.hpp"
 #include "support/test.hpp"
 #include "validation/harness/generic_metrics.hpp"

@@ -112,7 +112,7 @@ TEST_IN_2D_AND_3D("many isolated cells, and cells between nothing but air or sol
 TEST_IN_2D_AND_3D("a single cell, and no fluid at all") {
     for (const Cell kind : {Cell::fluid, Cell::solid, Cell::air}) {
         Operator<D> A;
-        A.cells = Grid<Cell, D>(Index<D>::constant(1), kind);
+        A.cells = Grid<Cell, D>(replicated(Index<D>::constant(1)), kind);
         for (const auto& method : methods_here()) {
             if (method.whole_box_only && kind != Cell::fluid) continue;
             const auto solver = poisson::make_solver<D>(method.name, {});
@@ -265,7 +265,7 @@ namespace {
 /// n × n cells of fluid in a ring of air, p = 0 at its cells' centres.
 Operator<2> in_air(int n) {
     Operator<2> A;
-    A.cells = Grid<Cell, 2>(Index<2>::constant(n + 2), Cell::fluid);
+    A.cells = Grid<Cell, 2>(replicated(Index<2>::constant(n + 2)), Cell::fluid);
     for_each_cell<2>(A.cells.extent(), [&](const Index<2>& I) {
         for (int a = 0; a < 2; ++a)
             if (I[a] == 0 || I[a] == n + 1) A.cells(I) = Cell::air;

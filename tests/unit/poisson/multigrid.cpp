@@ -13,12 +13,12 @@ namespace {
 
 /// Large enough for several threads (levels of 20,000 cells and more), of no round size.
 template <int D>
-Index<D> large() {
+Extent<D> large() {
     return extent_of<D>(D == 2 ? 210 : 43, D == 2 ? 161 : 38, 49);
 }
 
 template <int D>
-std::vector<Operator<D>> varied(const Index<D>& extent) {
+std::vector<Operator<D>> varied(const Extent<D>& extent) {
     std::vector<Operator<D>> list;
     list.push_back(random_operator<D>(extent, 1, {.solid = 0, .air = 0}));
     list.push_back(random_operator<D>(extent, 2, {.solid = 0.05, .air = 0.02}));
@@ -82,7 +82,8 @@ TEST_IN_2D_AND_3D("every method ignores the second copy of a periodic axis's fir
     auto alike = A;
     for (int a = 0; a < D; ++a) {
         auto& w = alike.weight[static_cast<std::size_t>(a)];
-        Index<D> lo{}, hi = w.extent();
+        Index<D> lo{};
+        const Extent<D> hi = w.extent();
         lo[a] = extent[a];
         for_each_in(lo, hi, [&](Index<D> I) {
             const Index<D> last = I;
@@ -131,7 +132,7 @@ TEST_IN_2D_AND_3D("every method gives the same bits on 1, 2 and 3 threads") {
 }
 
 TEST("the same bits on 1, 2 and 3 threads where each closes the triangles at its slab's beginning alone: hundreds of planes") {
-    for (const auto& A : varied<2>({90, 404})) {
+    for (const auto& A : varied<2>(extent_of<2>(90, 404, 1))) {
         const auto b = random_values<2>(A.cells.extent(), 22);
         const auto solve = [&](int count) {
             set_threads(count);

@@ -18,7 +18,7 @@ struct Chances {
 };
 
 template <int D>
-Operator<D> random_operator(const Index<D>& extent, unsigned seed, const Chances& chances) {
+Operator<D> random_operator(const Extent<D>& extent, unsigned seed, const Chances& chances) {
     std::mt19937 gen(seed);
     std::uniform_real_distribution<real> u(0, 1);
     Operator<D> A;
@@ -47,7 +47,7 @@ Operator<D> random_operator(const Index<D>& extent, unsigned seed, const Chances
 }
 
 template <int D>
-Grid<real, D> random_values(const Index<D>& extent, unsigned seed) {
+Grid<real, D> random_values(const Extent<D>& extent, unsigned seed) {
     std::mt19937 gen(seed);
     std::uniform_real_distribution<real> u(-1, 1);
     Grid<real, D> g(extent);
@@ -59,13 +59,13 @@ Grid<real, D> random_values(const Index<D>& extent, unsigned seed) {
 template <int D>
 Operator<D> box(int n) {
     Operator<D> A;
-    A.cells = Grid<Cell, D>(Index<D>::constant(n), Cell::fluid);
+    A.cells = Grid<Cell, D>(replicated(Index<D>::constant(n)), Cell::fluid);
     return A;
 }
 
 template <int D>
-Index<D> extent_of(int nx, int ny, int nz) {
-    Index<D> n;
+Extent<D> extent_of(int nx, int ny, int nz) {
+    Extent<D> n;
     n[0] = nx, n[1] = ny;
     if constexpr (D == 3) n[2] = nz;
     return n;

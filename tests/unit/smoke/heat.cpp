@@ -225,7 +225,7 @@ TEST_IN_2D_AND_3D("melt that is warmer rises, and ice does not") {
 TEST_IN_2D_AND_3D("a warm cell warms its neighbours and no cell leaves the range of temperatures, whatever the step") {
     set_threads(1);
     const matter::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
-    const Index<D> n = Index<D>::constant(17);
+    const Extent<D> n(Index<D>::constant(17));
     const Grid<poisson::Cell, D> cells(n, poisson::Cell::fluid);
     const Grid<real, D> none;
     for (const real fourier : {0.1, 0.3, 0.5, 1.0, 3.0, 30.0}) {
@@ -243,7 +243,7 @@ TEST_IN_2D_AND_3D("a warm cell warms its neighbours and no cell leaves the range
 TEST("a step of many stages has an eighth of z^2 for its error, z = -(pi/L)^2 alpha dt") {
     set_threads(1);
     const matter::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
-    const Index<2> n{64, 1};
+    const Extent<2> n(Index<2>{64, 1});
     const Grid<poisson::Cell, 2> cells(n, poisson::Cell::fluid);
     const Grid<real, 2> none;
     Conduction<2> conduction(m, n, {1.0, 1.0}, 1, {});
@@ -265,7 +265,7 @@ template <int D>
 void plain_conduction(const matter::Melting& m, const Vec<D>& h, real rho, const mac::Boundary<D>& boundary,
                       const Grid<poisson::Cell, D>& cells, const Grid<real, D>& source, real dt, int stages, Grid<real, D>& H) {
     using Kind = mac::EndRule::Kind;
-    const Index<D> n = H.extent();
+    const Extent<D> n = H.extent();
     const auto conductivity = [&](real at) {
         const real f = m.liquid(at);
         return std::pair{m.conductivity(f), f > 0 && f < 1};
@@ -314,7 +314,7 @@ void plain_conduction(const matter::Melting& m, const Vec<D>& h, real rho, const
 TEST_IN_2D_AND_3D("conduction in passes of several stages, by rows and by planes, is the formula's cell by cell") {
     using Kind = mac::EndRule::Kind;
     const matter::Melting m{.T = 300, .h_liquid = 3000, .c_solid = 2, .c_liquid = 4, .k_solid = 2.2, .k_liquid = 0.6};
-    Index<D> n = Index<D>::constant(5);
+    Extent<D> n(Index<D>::constant(5));
     n[0] = 150, n[D - 1] = 31;  // more than a block of a row; slabs of planes for two threads
     Vec<D> h = Vec<D>::constant(1);
     h[1] = 0.5;

@@ -31,7 +31,8 @@ struct BoxInWater : Basin<D> {
     }
     /// The wall at the upper end of x moves inwards, at every face.
     void push(real speed) {
-        Index<D> lo = low, hi = high;
+        Index<D> lo = low;
+        Extent<D> hi(high);
         lo[0] = high[0], hi[0] = high[0] + 1;
         for_each_in(lo, hi, [&](const Index<D>& I) { this->state.u[0](I) = -speed; });
     }

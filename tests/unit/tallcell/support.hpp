@@ -20,8 +20,8 @@ struct Basin {
     std::mt19937 random{7};
 
     /// `ground`: rows of solid, at most; `waves`: how far the surface strays from `level` (a part of the height).
-    explicit Basin(const Index<D>& cells, int ground = 0, real level = 0.8, real waves = 0.1,
-                   const Vec<D>& edges = Vec<D>::constant(0.25)) {
+    explicit Basin(const Index<D>& n, int ground = 0, real level = 0.8, real waves = 0.1, const Vec<D>& edges = Vec<D>::constant(0.25)) {
+        const Extent<D> cells(n);
         const real h = edges[1];
         state.u = MacVelocity<D>(cells, edges, Vec<D>{});
         state.p = Grid<real, D>(cells);
@@ -61,7 +61,7 @@ template <int D>
 auto any_knots(Basin<D>& basin, int longest) {
     return [&basin, longest](const Layout<D>& layout, const Grid<poisson::Cell, D>& cells, Knots& knots) {
         knots = Knots{};
-        knots.start = PlaneStore<int>(0, static_cast<std::size_t>(layout.n[0]), layout.n[1] + 1, 0, 0);
+        knots.start = PlaneStore<int>(nullptr, 0, static_cast<std::size_t>(layout.n[0]), layout.n[1] + 1, 0, 0);
         for (int c = 0; c < layout.columns(); ++c) {
             const auto liquid = [&](int row) {
                 Index<D> I = layout.foot(c);

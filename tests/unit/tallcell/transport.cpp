@@ -14,7 +14,7 @@ struct Stack {
     Stack() : basin(D == 2 ? Index<D>{20, 60} : cells_in_3d(), 0, 0.8, 0), mesh(basin.frame, 1, {}) {
         mesh.set_surface(basin.phi, basin.closed, basin.state, [](const Layout<D>& layout, const auto&, Knots& knots) {
             knots = Knots{};
-            knots.start = PlaneStore<int>(0, static_cast<std::size_t>(layout.n[0]), layout.n[1] + 1, 0, 0);
+            knots.start = PlaneStore<int>(nullptr, 0, static_cast<std::size_t>(layout.n[0]), layout.n[1] + 1, 0, 0);
             for (int c = 0; c < layout.columns(); ++c) {
                 int row = 0;
                 for (const int length : {2, 4, 8, 16, 3, 1, 0}) knots.row.push_back(row), knots.length.push_back(length), row += length;

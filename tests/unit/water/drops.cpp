@@ -74,7 +74,7 @@ TEST_IN_2D_AND_3D("curvature of circles and spheres is of second order") {
 // the cell. They err by h² |x|⁻² times a fourth derivative over 12, of order 1: 2 (h/r)² is allowed for.
 TEST_IN_2D_AND_3D("away from the surface curvature is that of the distance's second differences") {
     set_threads(1);
-    const MacVelocity<D> u(Index<D>::constant(32), Vec<D>::constant(1.0 / 32), Vec<D>{});
+    const MacVelocity<D> u(replicated(Index<D>::constant(32)), Vec<D>::constant(1.0 / 32), Vec<D>{});
     const Frame<D> frame(u, geometry::Sides<D>());
     Grid<real, D> phi(u.cells);
     const Vec<D> middle = Vec<D>::constant(0.51);

@@ -16,7 +16,7 @@ struct Surface {
     Surface(int n, const geometry::Shape<D>& liquid) : Surface(Index<D>::constant(n), liquid) {}
     /// A box of one metre in so many cells along each axis.
     Surface(const Index<D>& n, const geometry::Shape<D>& liquid)
-        : u(n, edges(n), Vec<D>{}), frame(u, geometry::Sides<D>()), level_set(frame, 1) {
+        : u(replicated(n), edges(n), Vec<D>{}), frame(u, geometry::Sides<D>()), level_set(frame, 1) {
         start_level_set<D>(liquid, geometry::Solids<D>(), frame, level_set);
     }
     static Vec<D> edges(const Index<D>& n) {

@@ -11,7 +11,7 @@ namespace {
 
 template <int D>
 Frame<D> unit_frame(int n) {
-    return Frame<D>(MacVelocity<D>(Index<D>::constant(n), Vec<D>::constant(1.0 / n), Vec<D>{}), geometry::Sides<D>());
+    return Frame<D>(MacVelocity<D>(replicated(Index<D>::constant(n)), Vec<D>::constant(1.0 / n), Vec<D>{}), geometry::Sides<D>());
 }
 
 template <int D>
@@ -70,7 +70,7 @@ TEST_IN_2D_AND_3D("jittered places lie in their half cells, differ between seeds
 
 TEST("markers in solid rotation come back at the order of the scheme: 2 for RK2, 3 for RK3") {
     // u = (−y, x) is linear, so interpolation is exact and only the error in time remains.
-    MacVelocity<2> u(Index<2>{{16, 16}}, Vec<2>::constant(1.0 / 8), Vec<2>::constant(-1));
+    MacVelocity<2> u(replicated(Index<2>{{16, 16}}), Vec<2>::constant(1.0 / 8), Vec<2>::constant(-1));
     for (int a = 0; a < 2; ++a)
         for_each_cell(u[a].extent(), [&](const Index<2>& I) {
             const Vec<2> x = u.face_centre(a, I);
@@ -90,7 +90,7 @@ TEST("markers in solid rotation come back at the order of the scheme: 2 for RK2,
 
 TEST_IN_2D_AND_3D("no marker leaves through a wall, and those that leave through an open side are removed and counted") {
     auto markers = random_markers<D>(500, false);
-    MacVelocity<D> u(Index<D>::constant(8), Vec<D>::constant(1.0 / 8), Vec<D>{});
+    MacVelocity<D> u(replicated(Index<D>::constant(8)), Vec<D>::constant(1.0 / 8), Vec<D>{});
     u[0].fill(3);
     geometry::Sides<D> sides;
     const Frame<D> frame(u, sides);

@@ -74,7 +74,7 @@ TEST("viscous water between no-slip walls stays at rest, whatever the step") {
             for (int i = 0; i < 50; ++i) water.step(dt);
             real fastest = 0;  // of the faces of liquid
             for (int a = 0; a < 2; ++a)
-                for_each_in(Index<2>{}, Index<2>{{16, 8}},
+                for_each_in(Index<2>{}, replicated(Index<2>{{16, 8}}),
                             [&](const Index<2>& I) { fastest = std::max(fastest, std::abs(water.state().u[a](I))); });
             EXPECT_LE(fastest, 50 * 1e-12 * 9.81 * dt * 16)
                 << scheme << ", nu " << nu << ", dt " << dt;  // tolerance of what g dt asks for, 16 cells wide

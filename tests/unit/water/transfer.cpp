@@ -9,7 +9,7 @@ namespace {
 /// 2^D jittered markers in each of the middle cells of a unit box of 12^D cells, moving with a given velocity.
 template <int D>
 struct Cloud {
-    MacVelocity<D> u{Index<D>::constant(12), Vec<D>::constant(1.0 / 12), Vec<D>{}};
+    MacVelocity<D> u{replicated(Index<D>::constant(12)), Vec<D>::constant(1.0 / 12), Vec<D>{}};
     Frame<D> frame{u, geometry::Sides<D>()};
     FaceSums<D> sums{u.cells};
     std::array<Grid<std::uint8_t, D>, D> known;
@@ -18,9 +18,8 @@ struct Cloud {
     template <class V>
     Cloud(bool affine, V velocity) : markers(true, affine) {
         for (int a = 0; a < D; ++a) known[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(u[a].extent());
-        Index<D> lo = Index<D>::constant(3), hi = Index<D>::constant(9);
         set_threads(1);
-        for_each_in(lo, hi, [&](const Index<D>& I) {
+        for_each_in(Index<D>::constant(3), replicated(Index<D>::constant(9)), [&](const Index<D>& I) {
             for (int sub = 0; sub < Markers<D>::per_cell; ++sub) {
                 const Vec<D> x = Markers<D>::jittered(frame, I, sub, 11);
                 markers.add(x, velocity(x));
@@ -86,7 +85,7 @@ TEST_IN_2D_AND_3D("a uniform velocity survives every transfer exactly, also besi
 // Markers on both sides of it give to its faces, which stand at either end of memory. Some hundred terms are added and divided.
 TEST_IN_2D_AND_3D("a uniform velocity survives at the seam of periodic axes") {
     set_threads(1);
-    MacVelocity<D> u{Index<D>::constant(6), Vec<D>::constant(1.0 / 6), Vec<D>{}};
+    MacVelocity<D> u{replicated(Index<D>::constant(6)), Vec<D>::constant(1.0 / 6), Vec<D>{}};
     geometry::Sides<D> sides;
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1}) sides.side(a, end).kind = geometry::SideKind::periodic;
@@ -131,7 +130,7 @@ TEST_IN_2D_AND_3D("APIC reproduces a linear velocity field exactly where markers
     for (std::size_t p = 0; p < cloud.markers.count(); ++p) cloud.markers.c[1][p] = -1, cloud.markers.c[D][p] = 1;
     cloud.to_faces();
     for (int a = 0; a < D; ++a)
-        for_each_in(Index<D>::constant(4), Index<D>::constant(8),
+        for_each_in(Index<D>::constant(4), replicated(Index<D>::constant(8)),
                     [&](const Index<D>& I) { EXPECT_NEAR(cloud.u[a](I), rotation<D>(cloud.u.face_centre(a, I))[a], 1e-13); });
 }
 
