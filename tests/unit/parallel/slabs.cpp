@@ -159,7 +159,8 @@ TEST("loops and sums over a grid follow its extent; over a replicated box they c
     set_communicator(std::make_unique<Echo>());
     const Index<2> cells{{3, 16}};
     const Grid<real, 2> q(Extent<2>(cells, OwnPlanes(slab_of(equal_partition(16, 2)))), 1);
-    EXPECT_TRUE(q.own().distributed() && !q.store().windowed());
+    EXPECT_TRUE(q.own().distributed() && !q.own().distributed_storage());
+    EXPECT_EQ(q.bytes(), q.size() * sizeof(real));  // all planes are stored
     const auto one = [](const Index<2>&) { return 1.0; };
     const auto visited = [](const Index<2>& lo, const Extent<2>& hi) {
         std::vector<int> cells_in_plane(32, 0);
