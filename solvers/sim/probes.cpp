@@ -155,7 +155,7 @@ void Probes::release_rows() {
     }
 }
 
-void Probes::save(Checkpoint& to, const Solver& solver) const {
+void Probes::save(Checkpoint& to, Solver& solver) const {
     FieldSet fields;
     for (std::size_t i = 0; i < series_.size(); ++i) {
         const std::string key = "probe." + series_[i].name + '.';

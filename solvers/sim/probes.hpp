@@ -65,7 +65,7 @@ public:
     const std::vector<ProbeSeries>& series() const { return series_; }
     /// All rows up to now were written to files: memory and checkpoints keep only their number.
     void release_rows();
-    void save(Checkpoint& to, const Solver& solver) const;
+    void save(Checkpoint& to, Solver& solver) const;
     void restore(const Checkpoint& from);
 
 private:
