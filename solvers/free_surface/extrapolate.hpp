@@ -58,7 +58,7 @@ private:
     std::vector<int> own_;                      // in parallel: indices in the front of the faces that this rank owns
     std::array<std::vector<char>, 2> near_of_;  // planes searched for layers, for faces along other axes and along the last
     std::vector<char> near_;                    // those of the present faces
-    std::vector<Segment> band_rows_;             // per row of cells, the part within the layers from which the first front starts
+    std::vector<Segment> band_rows_;            // per row of cells, the part within the layers from which the first front starts
     std::vector<std::uint8_t> joins_;           // of one row of faces
 };
 

@@ -52,7 +52,9 @@ public:
     /// the same faces.
     static bool holds(const Frame<D>& frame, int rank, int plane);
     /// The same for this rank; in one process true.
-    static bool holds(const Frame<D>& frame, int plane) { return !frame.own().distributed() || holds(frame, frame.own().slab->rank(), plane); }
+    static bool holds(const Frame<D>& frame, int plane) {
+        return !frame.own().distributed() || holds(frame, frame.own().slab->rank(), plane);
+    }
     /// Keeps, of all markers, those that this rank stores.
     void keep_held(const Frame<D>& frame);
     /// Migration after motion: every rank receives the markers that it stores now. Each rank sends its own in their order and receives in
@@ -64,9 +66,7 @@ public:
     /// Gathers the markers of all ranks in `all`, in the sorted order of one process.
     void gather(const Frame<D>& frame, Markers& all) const;
     /// The markers of this rank's own planes: [first, second). Sorted.
-    std::pair<std::size_t, std::size_t> own(const Frame<D>& frame) const {
-        return within(frame.own(), frame);
-    }
+    std::pair<std::size_t, std::size_t> own(const Frame<D>& frame) const { return within(frame.own(), frame); }
     /// The markers of these planes.
     std::pair<std::size_t, std::size_t> within(const OwnPlanes& planes, const Frame<D>& frame) const {
         const int lo = planes.lower(0), hi = planes.upper(frame.cells[D - 1]);

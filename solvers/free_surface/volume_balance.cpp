@@ -36,7 +36,8 @@ void LiquidVolume<D>::for_each_near_line(F&& f) const {
     const auto n = static_cast<std::size_t>(frame_.cells[0]);
     for (std::size_t line = 0; line < lines_.size(); ++line) {
         const Index<D> I = frame_.index_of(line * n);
-        if (!frame_.own().contains(I[D - 1]) && !frame_.own().contains(frame_.near(I, D - 1, 1)[D - 1]) && !frame_.own().contains(frame_.near(I, D - 1, -1)[D - 1]))
+        if (!frame_.own().contains(I[D - 1]) && !frame_.own().contains(frame_.near(I, D - 1, 1)[D - 1]) &&
+            !frame_.own().contains(frame_.near(I, D - 1, -1)[D - 1]))
             continue;
         const Segment& wet = lines_[line];
         if (!wet.empty()) f(line * n + static_cast<std::size_t>(wet.begin), line * n + static_cast<std::size_t>(wet.end));

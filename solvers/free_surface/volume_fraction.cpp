@@ -318,7 +318,8 @@ void LiquidVolume<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t LiquidVolume<D>::bytes() const {
     std::size_t total = part_.bytes() + open_.bytes() + dilation_.bytes() + full_.bytes() + missing_.bytes() + near_.bytes() +
-                        rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) + 2 * lines_.capacity() * sizeof(Segment);
+                        rests_.capacity() * sizeof(Rest) + drops_.capacity() * sizeof(std::size_t) +
+                        2 * lines_.capacity() * sizeof(Segment);
     for (std::size_t a = 0; a < D; ++a) total += flux_[a].bytes();
     return total;
 }

@@ -50,7 +50,7 @@ private:
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     mutable Field depth_, displaced_;
     Field nothing_;
-    bool ghosts_filled_ = true;               // whether ghost rows, or all rows, are up to date
+    bool ghosts_filled_ = true;  // whether ghost rows, or all rows, are up to date
     Passes passes_;
     real cfl_ = 0, limit_ = infinity, damping_ = 0;
     real through_ = 0;  // volume rate through sides [m^3/s]

@@ -3,7 +3,6 @@
 #include "heightfield/effects.hpp"
 #include "heightfield/shallow_water.hpp"
 #include "heightfield/solver.hpp"
-#include "parallel/traffic.hpp"
 #include "scene/formula.hpp"
 #include "scene/one_process.hpp"
 
@@ -156,34 +155,6 @@ void check_parallel(const scene::Scene& scene) {
     scene::refuse_brush(scene);
 }
 
-/// Messages of a step in parallel: ghost rows before each stage, and reductions over rows.
-StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
-    const Plane plane(scene);
-    const Sides sides(scene);
-    const PlaneSize row{sizeof(real) * static_cast<std::size_t>(plane.nx), plane.nz}, number{sizeof(real), plane.nz};
-    Tally tally(of.cut, of.rank, sides(1, 0).kind == SideKind::periodic);
-    if (of.cut.empty()) return tally_run(tally), tally.sent();
-    if (scene.text("scheme.model") == "columns") {
-        tally.refresh({row}, 1);
-        for (int end = 0; end < 2; ++end) {
-            const bool owns = of.rank == (end == 0 ? 0 : of.ranks - 1);
-            if (sides.open(0, end)) tally.gather(number);
-            if (sides.open(1, end)) tally.everywhere(owns ? row.bytes : 0, 1, row.bytes);
-        }
-        if (shape.step % Columns::checked_every == 0) tally.gather(number);
-    } else {
-        tally.refresh({row, row, row}, rows_beside, 2);
-        tally.gather({sizeof(RowReport), plane.nz}, 2);
-    }
-    tally_run(tally);
-    if (const auto* gravity = scene.effect("gravity"); gravity && scene.text("scheme.model") != "columns")
-        if (const auto& g = gravity->numbers("g"); g[0] != 0 || g[2] != 0) tally.gather(number, 2);  // pace and volume after a push
-    if (scene.effect("rain")) tally.sent().besides.emplace_back("effects.rain");
-    if (scene.has("probes") && !scene.root().tables("probes").empty()) tally.sent().besides.emplace_back("probes");
-    if (scene.root().number_or("time.stop_when_steady", 0) > 0) tally.sent().besides.emplace_back("time.stop_when_steady");
-    return tally.sent();
-}
-
 }  // namespace
 
 scene::SolverKind kind() {
@@ -214,7 +185,6 @@ scene::SolverKind kind() {
              "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"},
             {.check = check_parallel,
              .distributed_storage = holds_own_rows,
-             .traffic = traffic_of_step,
              .partition = [](const scene::Scene& scene, int ranks) { return partition_of_rows(Plane(scene), ranks); }}};
 }
 

@@ -1,5 +1,6 @@
 // One run distributed over several processes (MPI ranks). Each rank owns a slab of planes along the slowest axis and computes them as one
-// process would. Ghost planes are filled by halo exchange. Sums are exact, so results are bitwise equal for any number of ranks. With one rank, the default, every call does nothing.
+// process would. Ghost planes are filled by halo exchange. Sums are exact, so results are bitwise equal for any number of ranks. With one
+// rank, the default, every call does nothing.
 #pragma once
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -146,8 +147,7 @@ void by_first_rank(F&& f) {
 /// The exact sum of the terms of all ranks that share these planes: `here` is this rank's sum. An ExactSum, or ExactSums of several
 /// quantities in one message.
 template <class Sum>
-    requires std::is_class_v<Sum>
-Sum sum_of_ranks(const OwnPlanes& own, const Sum& here) {
+requires std::is_class_v<Sum> Sum sum_of_ranks(const OwnPlanes& own, const Sum& here) {
     if (!own.distributed()) return here;
     Sum all{};
     for (const Sum& of_rank : of_ranks(here)) all.add(of_rank);

@@ -13,8 +13,8 @@
 namespace weir {
 
 /// Partitions the planes so that their work is as even as boundaries at multiples of 8 planes allow (of fewer where there are few planes,
-/// as in equal_partition). Each rank gets at least one such slab. Planes without work still belong to the slab of their owner. One rank gets no
-/// partition.
+/// as in equal_partition). Each rank gets at least one such slab. Planes without work still belong to the slab of their owner. One rank
+/// gets no partition.
 inline Partition load_balanced_partition(std::span<const std::int64_t> work, int ranks) {
     const int planes = static_cast<int>(work.size());
     Partition cut = equal_partition(planes, ranks);

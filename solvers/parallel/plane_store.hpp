@@ -1,6 +1,6 @@
-// Memory of an array of planes. With one rank it is a vector. With distributed storage (parallel/slab.hpp) it is address space for the whole array,
-// with memory only for this rank's planes and its ghost planes. Every index then means the same on all ranks, and an access to any other
-// plane faults (as in sparse grids: Setaluri, Aanjaneya, Bauer & Sifakis 2014).
+// Memory of an array of planes. With one rank it is a vector. With distributed storage (parallel/slab.hpp) it is address space for the
+// whole array, with memory only for this rank's planes and its ghost planes. Every index then means the same on all ranks, and an access to
+// any other plane faults (as in sparse grids: Setaluri, Aanjaneya, Bauer & Sifakis 2014).
 #pragma once
 #include "core/scratch.hpp"
 #include "parallel/communicator.hpp"

@@ -1,6 +1,5 @@
 // The registration of "pbf": its keys, effects and factory.
 #include "particles/state/kind.hpp"
-#include "particles/ranks/traffic.hpp"
 #include "pbf/device_solver.hpp"
 #include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
@@ -82,21 +81,6 @@ std::vector<scene::Variant> effects() {
          {"k"}}};
 }
 
-/// Messages of a step in parallel: ghost particles, and their multipliers and positions in each iteration.
-StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
-    const Options options(scene);
-    const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);
-    const int warm = options.warm_start > 0 ? 1 : 0, dim = scene.dim();
-    Tally tally({}, of.rank);
-    particles::tally_migration(shared, of, dim + 1 + warm, tally);  // position, place
-    particles::tally_halos(shared, of, 4 * sizeof(float), 2 * std::int64_t{shape.iterations} + warm, tally);
-    particles::tally_end(of, tally);
-    tally_run(tally);
-    tally.sent().besides = particles::not_counted(scene, {"xsph", "vorticity"});
-    if (options.tolerance > 0) tally.sent().besides.emplace_back("scheme.tolerance");
-    return tally.sent();
-}
-
 }  // namespace
 
 scene::SolverKind kind() {
@@ -104,7 +88,7 @@ scene::SolverKind kind() {
     return {particles::schema_of({.name = "pbf", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"fluid.viscosity"}}, {}),
             particles::make_solver<PbfSolver, ReferencePbfSolver, DevicePbfSolver>,
             particles::plain_step({}, {"predict", "neighbours", "warm start", "lambda", "correct", "update"}),
-            {.check = particles::refuse_in_parallel, .shared = scene::Shared::by_particles, .traffic = traffic_of_step}};
+            {.check = particles::refuse_in_parallel, .shared = scene::Shared::by_particles}};
 }
 
 }  // namespace weir::pbf

@@ -24,7 +24,8 @@ bool is_whole_closed_box(const Operator<D>& A) {
     for (int a = 0; a < D; ++a) {
         const auto& weight = A.weight[static_cast<std::size_t>(a)];
         const int n = A.cells.extent()[a];
-        const real wrong = sum_over(replicated<D>(weight.extent()), [&](const Index<D>& I) { return weight(I) != (I[a] > 0 && I[a] < n ? 1.0 : 0.0); });
+        const real wrong =
+            sum_over(replicated<D>(weight.extent()), [&](const Index<D>& I) { return weight(I) != (I[a] > 0 && I[a] < n ? 1.0 : 0.0); });
         if (wrong > 0) return false;
     }
     return true;
@@ -119,7 +120,9 @@ private:
     /// Stores b − A p in values_ and returns its norm relative to that of b.
     real measure(const Grid<real, D>& p) {
         residual(A_, p, b_, values_);
-        const auto square = [&](const Grid<real, D>& g) { return sum_over(replicated<D>(g.extent()), [&](const Index<D>& I) { return g(I) * g(I); }); };
+        const auto square = [&](const Grid<real, D>& g) {
+            return sum_over(replicated<D>(g.extent()), [&](const Index<D>& I) { return g(I) * g(I); });
+        };
         const real b2 = square(b_);
         return b2 == 0 ? 0 : std::sqrt(square(values_) / b2);
     }
@@ -132,7 +135,9 @@ private:
         const real eta = 3.5 * epsilon * std::log2(4 * N);
         real norm_of_A = 0;
         for (int a = 0; a < D; ++a) norm_of_A += 4 * A_.axis_weight[a];
-        const auto square = [&](const Grid<real, D>& g) { return sum_over(replicated<D>(g.extent()), [&](const Index<D>& I) { return g(I) * g(I); }); };
+        const auto square = [&](const Grid<real, D>& g) {
+            return sum_over(replicated<D>(g.extent()), [&](const Index<D>& I) { return g(I) * g(I); });
+        };
         return eta + (eta + (2 * D + 1) * epsilon) * norm_of_A * std::sqrt(square(p) / square(b_));
     }
 

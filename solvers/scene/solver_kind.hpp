@@ -12,9 +12,6 @@
 
 namespace weir {
 struct Partition;  // parallel/partition.hpp
-struct RankOf;
-struct StepShape;
-struct StepTraffic;  // parallel/traffic.hpp
 }  // namespace weir
 
 namespace weir::scene {
@@ -39,8 +36,6 @@ struct ParallelSupport {
     std::function<ReplicatedWorks(const Scene&, const Partition&)> replicated_work{};
     /// Returns whether a scene with this partition has distributed storage. Empty: all ranks store everything.
     std::function<bool(const Scene&, const Partition&)> distributed_storage{};
-    /// Estimate of what a rank sends in such a step. Empty: unknown.
-    std::function<StepTraffic(const Scene&, const RankOf&, const StepShape&)> traffic{};
     /// The partition of a scene's planes among `ranks` ranks; an empty one: replicated work. No function: the equal parts of
     /// equal_partition.
     std::function<Partition(const Scene&, int ranks)> partition{};

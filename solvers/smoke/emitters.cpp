@@ -71,7 +71,8 @@ std::string Emitters<D>::idle(const Emitter& emitter, const geometry::Shape<D>& 
                    (set.axis < 0 ? "" : std::string(" along ") + "xyz"[set.axis]);
     const auto [cells, any] = covered(shape, state.cells, [&](const Index<D>& I) { return state.u.cell_centre(I); });
     const bool some = std::any_of(cells.begin(), cells.end(), [&](std::size_t i) { return state.cells[i] != poisson::Cell::solid; });
-    if (any && (state.own().distributed() ? communicator().largest(some) : some) == 0) return "the emitter lies inside solids: nothing can leave it";
+    if (any && (state.own().distributed() ? communicator().largest(some) : some) == 0)
+        return "the emitter lies inside solids: nothing can leave it";
     return {};
 }
 

@@ -5,7 +5,6 @@
 #include "mac/grid/initial.hpp"
 #include "mac/grid/own_planes.hpp"
 #include "matter/heat.hpp"
-#include "parallel/traffic.hpp"
 #include "scene/one_process.hpp"
 #include "smoke/effects.hpp"
 #include "smoke/solver.hpp"
@@ -61,8 +60,7 @@ scene::SolverKind kind() {
             {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
             {.check = check_parallel,
              .replicated_work = mac::replicated_pressure,
-             .distributed_storage = mac::holds_own_planes,
-             .traffic = traffic_of_step}};
+             .distributed_storage = mac::holds_own_planes}};
 }
 
 }  // namespace weir::smoke

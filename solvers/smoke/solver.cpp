@@ -525,10 +525,15 @@ void FlowSolver<D>::check_own_planes() const {
     for (const auto& field : state_.fields) check(field.values, field.name);
 }
 
-/// Ghost planes, or the planes of all ranks where whole fields are read.
 template <int D>
 void FlowSolver<D>::synchronize() {
     if (walls_ && state_.nu > 0 && !walls_->found()) walls_->find(state_, solids_, state_.time, state_.time);
+    exchange_fields();
+}
+
+/// Ghost planes, or the planes of all ranks where whole fields are read.
+template <int D>
+void FlowSolver<D>::exchange_fields() {
     if (whole_) return;
     std::vector<Grid<real, D>*> shown;
     for (int a = 0; a < D; ++a) shown.push_back(&state_.u[a]);
@@ -574,9 +579,8 @@ FieldSet FlowSolver<D>::fields() const {
     }
     if (wants_divergence_) {
         if (divergence_.empty()) divergence_ = Grid<real, D>(state_.extent());
-        for_each_cell(shown, [&](const Index<D>& I) {
-            divergence_(I) = state_.cells(I) == poisson::Cell::fluid ? flux_divergence(state_, I) : 0;
-        });
+        for_each_cell(
+            shown, [&](const Index<D>& I) { divergence_(I) = state_.cells(I) == poisson::Cell::fluid ? flux_divergence(state_, I) : 0; });
         set.fields.push_back({"divergence", "1/s", Where::cell, "", {divergence_.values()}});
     }
     if (bodies_) bodies_->bodies().show(set);
@@ -642,7 +646,7 @@ void FlowSolver<D>::restore(const Checkpoint& from) {
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !own().distributed();
     if (walls_) walls_->forget();
-    synchronize();
+    exchange_fields();
     fastest_ = not_applicable;
     impulse_ = from.template get_value<Vec<D>>("impulse");
     if (from.has("smoke_in_solids")) {

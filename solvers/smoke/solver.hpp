@@ -17,10 +17,6 @@
 
 namespace weir::smoke {
 
-/// Estimate of what a rank sends in a step of a scene with this partition: a halo exchange after each pass whose results neighbours read,
-/// and the collective sums over planes.
-StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
-
 /// The fields requested by the scene's effects, emitters and initial values.
 template <int D>
 FieldPlan field_plan(const Effects<MacState<D>>& effects, const scene::Scene& scene);
@@ -93,6 +89,7 @@ private:
     real last_rate() const;
     StepReport report(real dt);
     void refresh_fields();
+    void exchange_fields();
     void check_own_planes() const;
 
     void add_loads(std::vector<Integral>& list) const;

@@ -1,6 +1,5 @@
 // The registration of "sph": its keys, effects and factory.
 #include "particles/state/kind.hpp"
-#include "particles/ranks/traffic.hpp"
 #include "sph/device_solver.hpp"
 #include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
@@ -93,21 +92,6 @@ Key surface() {
             .length = -1};
 }
 
-/// Messages of a step in parallel: ghost particles, and their new velocities or summed densities.
-StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape) {
-    const particles::SharedParticles shared = particles::shared_particles(scene, of, shape);
-    const auto dim = static_cast<std::size_t>(scene.dim());
-    Tally tally({}, of.rank);
-    particles::tally_migration(shared, of, 2 * scene.dim() + 2, tally);  // position, place, velocity, density
-    const bool continuity = scene.text("scheme.density") == "continuity";
-    particles::tally_halos(shared, of, continuity ? dim * sizeof(real) : sizeof(float), 1, tally);
-    particles::tally_end(of, tally);
-    tally_run(tally);
-    tally.sent().besides =
-        particles::not_counted(scene, {"xsph", "vorticity", "viscosity", "artificial_viscosity", "density_diffusion", "surface_tension"});
-    return tally.sent();
-}
-
 }  // namespace
 
 scene::SolverKind kind() {
@@ -116,7 +100,7 @@ scene::SolverKind kind() {
         particles::schema_of({.name = "sph", .doc = doc, .keys = {scheme()}, .effects = effects(), .without = {"time.cfl"}}, {surface()}),
         particles::make_solver<SphSolver, ReferenceSphSolver, DeviceSphSolver>,
         particles::plain_step({"pressure"}, {"neighbours", "density", "forces", "integrate"}),
-        {.check = particles::refuse_in_parallel, .shared = scene::Shared::by_particles, .traffic = traffic_of_step}};
+        {.check = particles::refuse_in_parallel, .shared = scene::Shared::by_particles}};
 }
 
 }  // namespace weir::sph

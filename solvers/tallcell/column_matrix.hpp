@@ -28,7 +28,7 @@ struct ColumnPlaces {
     std::array<int, 2> n{1, 1};      // columns along the horizontal axes
     std::array<bool, 2> periodic{};  // of these axes
     int rows = 0;                    // number of shared rows
-    Partition cut;                         // in parallel, the partition of lines; empty for replicated work
+    Partition cut;                   // in parallel, the partition of lines; empty for replicated work
 
     static constexpr int block = 8192;  // entries of a line summed together
     static constexpr int no_line = -1;  // index of the line of zeros
@@ -159,7 +159,6 @@ struct ColumnMatrix : ColumnPlaces {
     }
     std::size_t bytes() const;
     /// In parallel, the bytes that each rank sends per row.
-    static constexpr std::size_t bytes_of_look();
 
 private:
     /// Properties of a row within this rank's lines.
@@ -176,7 +175,6 @@ private:
     ColumnPlaces cleared_;     // the layout for which the line of zeros was cleared
 };
 
-constexpr std::size_t ColumnMatrix::bytes_of_look() { return sizeof(Look); }
 
 /// Copies the columns at the ends of line z beyond its other end, where the axis is periodic.
 template <class T>

@@ -22,7 +22,7 @@ struct ColumnRange {
 template <int D>
 struct Layout {
     int up = 1, rows = 0;
-    Extent<D> cells{};  // with the planes, that is, lines of columns, of this rank
+    Extent<D> cells{};               // with the planes, that is, lines of columns, of this rank
     std::array<int, D - 1> axes{};   // the horizontal ones
     std::array<int, 2> n{1, 1};      // columns along them
     std::array<bool, 2> periodic{};  // of these axes

@@ -3,7 +3,6 @@
 #include "geometry/brush.hpp"
 #include "mac/grid/initial.hpp"
 #include "mac/grid/kind.hpp"
-#include "parallel/traffic.hpp"
 #include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
 #include "tallcell/solver.hpp"
@@ -103,7 +102,6 @@ scene::SolverKind kind() {
                  return scene::ReplicatedWorks{scene::ReplicatedWork::small_pressure_levels, scene::ReplicatedWork::level_set_in_solids};
              },
          .distributed_storage = holds_own_planes,
-         .traffic = traffic_of_step,
          .partition = partition_of_columns}};
 }
 

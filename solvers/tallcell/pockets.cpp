@@ -167,8 +167,7 @@ std::size_t Pockets::bytes() const {
     return (begin_.capacity() + end_.capacity() + number_.capacity() + parent_.capacity() + pocket_.capacity() + here_.capacity() +
             lower_.capacity() + firsts_.capacity()) *
                sizeof(int) +
-           open_.capacity() + (mass_.capacity() + size_.capacity() + mean_.capacity()) * sizeof(real) +
-           sums_.capacity() * sizeof(ExactSum);
+           open_.capacity() + (mass_.capacity() + size_.capacity() + mean_.capacity()) * sizeof(real) + sums_.capacity() * sizeof(ExactSum);
 }
 
 }  // namespace weir::tallcell

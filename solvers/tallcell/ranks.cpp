@@ -28,8 +28,8 @@ void TallCells<D>::refresh_velocity(real dt) {
     solids_.fill_ghosts(state_, reach_);
 }
 
-/// The heights of cells, and ghost planes, where the level set is valid since redistance(); or the planes of all ranks where whole fields are
-/// read.
+/// The heights of cells, and ghost planes, where the level set is valid since redistance(); or the planes of all ranks where whole fields
+/// are read.
 template <int D>
 void TallCells<D>::synchronize() {
     if (whole_) return;

@@ -23,9 +23,6 @@ scene::SolverKind kind();
 Partition partition_of_columns(const scene::Scene& scene, int ranks);
 /// Returns whether fields can have distributed storage: not where whole fields are read on all ranks.
 bool holds_own_planes(const scene::Scene& scene, const Partition& cut);
-/// Estimate of what a rank sends in a step of a scene with this partition.
-StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
-
 struct TallOptions {
     Shape shape;
     bool maccormack = true;
@@ -112,8 +109,8 @@ private:
     std::int64_t steps_ = 0;
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
-    int reach_ = 0;              // ghost planes that motion reads in this step
-    bool whole_ = true;          // other ranks' planes, or the ghost planes, are up to date
+    int reach_ = 0;      // ghost planes that motion reads in this step
+    bool whole_ = true;  // other ranks' planes, or the ghost planes, are up to date
 };
 
 }  // namespace weir::tallcell

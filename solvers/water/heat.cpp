@@ -317,8 +317,8 @@ void LiquidHeat<D>::restore(const Checkpoint& from, const MacState<D>& s) {
 
 template <int D>
 std::size_t LiquidHeat<D>::bytes() const {
-    std::size_t count =
-        conduction_.bytes() + supply_.bytes() + ice_.bytes() + known_.size() + known_next_.size() + surface_cells_.capacity() * sizeof(std::size_t);
+    std::size_t count = conduction_.bytes() + supply_.bytes() + ice_.bytes() + known_.size() + known_next_.size() +
+                        surface_cells_.capacity() * sizeof(std::size_t);
     for (const auto* grid : {&enthalpy_, &temperature_, &liquid_, &moved_, &source_}) count += grid->size() * sizeof(real);
     return count;
 }

@@ -68,7 +68,7 @@ private:
     Conduction<D> conduction_;
     HeatSupply<D> supply_;
     Grid<real, D> enthalpy_, temperature_, liquid_, moved_, source_;
-    Grid<std::uint8_t, D> known_, known_next_;  // layers of cells around the liquid whose enthalpy is known
+    Grid<std::uint8_t, D> known_, known_next_;           // layers of cells around the liquid whose enthalpy is known
     std::vector<std::size_t> surface_cells_;             // of liquid, beside air
     std::int64_t cells_ = 0;                             // number of liquid cells
     real mean_ = 0;                                      // H̄ of the heat balance [J/kg]

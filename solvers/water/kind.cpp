@@ -3,7 +3,6 @@
 #include "mac/grid/initial.hpp"
 #include "mac/grid/own_planes.hpp"
 #include "matter/heat.hpp"
-#include "parallel/traffic.hpp"
 #include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
 #include "water/effects.hpp"
@@ -106,7 +105,6 @@ scene::SolverKind kind() {
                      return works;
                  },
              .distributed_storage = mac::holds_own_planes,
-             .traffic = traffic_of_step,
              .work_of_planes = work_of_planes}};
 }
 

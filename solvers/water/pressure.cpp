@@ -77,7 +77,7 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
     const int lines = static_cast<int>(liquid_.stride(D - 1)), planes = frame_.cells[D - 1];
     const int begin = frame_.own().lower(0), end = frame_.own().upper(planes);
     has_liquid_ = sum_of_ranks(frame_.own(), std::any_of(liquid_.data() + begin * lines, liquid_.data() + end * lines,
-                                           [](const Segment& extent) { return extent.begin < extent.end; })) > 0;
+                                                         [](const Segment& extent) { return extent.begin < extent.end; })) > 0;
 }
 
 /// Face weights: the open fraction between liquid cells, times 1/θ where the surface cuts the line between the centres.

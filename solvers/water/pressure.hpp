@@ -65,8 +65,8 @@ private:
                                    const Grid<real, D>& curvature, std::array<Grid<real, D>, D>& u) const;
 
     Frame<D> frame_;
-    poisson::Operator<D> A_;  // its weights are valid on faces of liquid cells, stale elsewhere
-    Grid<real, D> b_;         // likewise
+    poisson::Operator<D> A_;   // its weights are valid on faces of liquid cells, stale elsewhere
+    Grid<real, D> b_;          // likewise
     Grid<Segment, D> liquid_;  // per line of cells along x
     bool has_liquid_ = false;
     bool shares_planes_ = false;  // in parallel: ranks share the work of the solve; otherwise each does all of it

@@ -40,9 +40,6 @@ std::vector<std::int64_t> work_of_planes(const scene::Scene& scene, const Checkp
 /// The registered solver "mac_water".
 scene::SolverKind kind();
 
-/// Estimate of what a rank sends in a step of a scene with this partition.
-StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape& shape);
-
 /// Advection of momentum: on the grid (semi-Lagrangian), or on the markers.
 enum class Transfer { grid, pic, flip, apic };
 
@@ -206,9 +203,9 @@ private:
     real volume_shift_ = 0;                        // total displacement by volume control [m]
     std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Passes passes_;
-    int reach_ = 0;  // ghost planes that motion reads in this step
-    bool whole_ = true;  // other ranks' or ghost planes are up to date; so is all_markers_
-    Markers<D> all_markers_;             // where whole fields are read: those of all ranks
+    int reach_ = 0;           // ghost planes that motion reads in this step
+    bool whole_ = true;       // other ranks' or ghost planes are up to date; so is all_markers_
+    Markers<D> all_markers_;  // where whole fields are read: those of all ranks
 };
 
 }  // namespace weir::water

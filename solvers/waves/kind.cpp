@@ -1,5 +1,4 @@
 // The schema of the solver "waves".
-#include "parallel/traffic.hpp"
 #include "scene/gravity.hpp"
 #include "waves/fourier.hpp"
 #include "waves/solver.hpp"
@@ -47,7 +46,9 @@ Key bed() {
     };
     return {.name = "bed",
             .type = Type::table,
-            .doc = "A bed whose depth changes along x: waves come from deep water and are refracted and amplified by the exact dispersion relation.",
+            .doc =
+                "A bed whose depth changes along x: waves come from deep water and are refracted and amplified by the exact dispersion "
+                "relation.",
             .keys = {list("x", "Positions, in increasing order."),
                      list("depth", "Depth at each, greater than 0; straight lines between them.")},
             .example = "bed = { x = [0.0, 100.0], depth = [20.0, 2.0] }"};
@@ -142,7 +143,12 @@ std::vector<Variant> models() {
           positive("wavelength", "Distance between crests.", "m"),
           heading("it travels"),
           number("phase", "Phase at the origin of coordinates at t = 0; 0: a crest.", "rad", 0.0),
-          {.name = "order", .type = Type::integer, .doc = "Order of the expansion in k H/2.", .fallback = std::int64_t{5}, .min = 1, .max = 5}}},
+          {.name = "order",
+           .type = Type::integer,
+           .doc = "Order of the expansion in k H/2.",
+           .fallback = std::int64_t{5},
+           .min = 1,
+           .max = 5}}},
         {"basin",
          "Water in a box with vertical walls, released from rest with the surface of the scene's `liquid`: its linear waves, mode by mode.",
          {}},
@@ -154,11 +160,9 @@ Key waves() {
             .type = Type::table,
             .doc = "Wave model.",
             .required = true,
-            .keys = {{.name = "level",
-                      .type = Type::number,
-                      .doc = "Height of the surface at rest.",
-                      .unit = "m"},
-                     optional("depth", "Depth of the water below the level; absent: deep water. The floor of a basin is that of the grid.", "m"),
+            .keys = {{.name = "level", .type = Type::number, .doc = "Height of the surface at rest.", .unit = "m"},
+                     optional("depth", "Depth of the water below the level; absent: deep water. The floor of a basin is that of the grid.",
+                              "m"),
                      {.name = "velocity", .type = Type::flag, .doc = "Computes velocities, too.", .fallback = true}},
             .selector = "model",
             .example = "waves = { model = \"sines\", trains = [ { amplitude = 0.5, wavelength = 20.0 } ] }"};
@@ -186,31 +190,6 @@ std::vector<Variant> effects() {
 /// Everything is distributed.
 void check_parallel(const scene::Scene&) {}
 
-/// Messages of a step in parallel: each sum of a sea's or a basin's waves in 3D is transposed once. While the surface is not folded, its
-/// least Jacobian is reduced over the ranks.
-StepTraffic traffic_of_step(const scene::Scene& scene, const RankOf& of, const StepShape&) {
-    const Box box(scene);
-    Tally tally(of.cut, of.rank);
-    tally_run(tally);
-    if (scene.has("probes") && !scene.root().tables("probes").empty()) tally.sent().besides.emplace_back("probes");
-    if (of.cut.empty() || box.dim == 2) return tally.sent();
-    const scene::Table& waves = scene.root().table("waves");
-    const bool sea = waves.text("model") == "spectrum", basin = waves.text("model") == "basin";
-    const bool sideways = sea ? waves.number("choppiness") > 0 : waves.text("model") == "gerstner";
-    if (sideways && !scene.effect("foam")) tally.gather({sizeof(real), box.nz()});
-    if (!sea && !basin) return tally.sent();
-    // heights; horizontal displacements and their derivatives; velocities of the surface and, below it, of every layer
-    const int sums = 1 + (sideways ? 5 : 0) + (waves.flag("velocity") ? 3 * (box.ny() > 1 ? 1 + box.ny() : 1) : 0);
-    const int count = sea ? HalfPlane{box.nx(), box.nz()}.columns() : box.nx();
-    const std::size_t each = sea ? sizeof(Complex) : sizeof(real);
-    const Partition columns = partition_of_columns(count, of.ranks);
-    const auto own = static_cast<std::size_t>(columns.end(of.rank, count) - columns.begin(of.rank));
-    for (int peer = 0; peer < of.ranks; ++peer)
-        if (peer != of.rank) tally.message(own * static_cast<std::size_t>(of.cut.end(peer, box.nz()) - of.cut.begin(peer)) * each, sums);
-    tally.sent().rounds += sums;
-    return tally.sent();
-}
-
 }  // namespace
 
 scene::SolverKind kind() {
@@ -234,7 +213,6 @@ scene::SolverKind kind() {
                      return scene.dim() == 2 ? scene::ReplicatedWorks{scene::ReplicatedWork::surface_row} : scene::ReplicatedWorks{};
                  },
              .distributed_storage = holds_own_planes,
-             .traffic = traffic_of_step,
              .partition = [](const scene::Scene& scene, int ranks) { return partition_of_box(Box(scene), ranks); }}};
 }
 

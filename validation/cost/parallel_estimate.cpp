@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "parallel/communicator.hpp"
 #include "sim/shares.hpp"
+#include "sim/simulation.hpp"
 
 #include <fmt/format.h>
 
@@ -63,49 +64,41 @@ public:
 
 int planes_of_scene(const scene::Scene& scene) { return static_cast<int>(scene.root().numbers("grid.cells").back()); }
 
-/// One that has two neighbours and as many planes as any other: of a model in which all have as much to do.
-RankOf one_between(const scene::Scene& scene, const scene::SolverKind& kind, int ranks) {
-    RankOf of{.rank = ranks / 2, .ranks = ranks};
-    if (kind.parallel.shared == scene::Shared::by_planes)
-        of.cut = kind.parallel.partition ? kind.parallel.partition(scene, ranks) : equal_partition(planes_of_scene(scene), ranks);
-    return of;
-}
-
 /// An equal part, and the ghost particles within a kernel's reach of the subdomain boundaries, over all planes.
 double part_of_particles(const scene::Scene& scene, int rank, int ranks) {
     const double cuts = rank == 0 || rank + 1 == ranks ? 1 : 2;
     return std::min(1.0, 1.0 / ranks + cuts * scene.number("scheme.support") / planes_of_scene(scene));
 }
 
-/// The scene with so many planes for each of so many ranks, in a domain that is as much longer.
-scene::Scene with_planes(const scene::Scene& scene, int planes, const std::vector<scene::SolverSchema>& schemas) {
-    auto cells = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size");
-    size.back() *= planes / cells.back();
-    cells.back() = planes;
-    auto overrides = scene.overrides();
-    overrides.push_back({"grid.cells", fmt::format("[{}]", fmt::join(cells, ", "))});
-    overrides.push_back({"grid.size", fmt::format("[{}]", fmt::join(size, ", "))});
-    return scene::parse(scene.source(), scene.file(), schemas, overrides);
-}
-
-std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, const ParallelEstimate& o,
+/// Where a rank between two others sends what this one has sent among `counted` ranks: with more ranks, as much, and all receive more.
+std::vector<ModelStep> weak_scaling(const scene::Scene& scene, const ParallelEstimate& o, const RankTraffic& sent, int counted,
                                     double particles) {
-    const auto& kind = sim::kind_named(scene.solver(), kinds);
-    const std::vector<scene::SolverSchema> schemas = scene::schemas_of(kinds);
     const double each = particles > 0 ? particles / o.ranks : static_cast<double>(planes_of_scene(scene)) / o.ranks;
     double cells = 1;
     for (const double n : scene.root().numbers("grid.cells")) cells *= n;
     const double units = particles > 0 ? each : cells / planes_of_scene(scene) * each;
     std::vector<ModelStep> list{{1, units * o.seconds_each, 0}};
-    for (int ranks = 2; ranks <= most_ranks; ranks *= 2) try {
-            const scene::Scene other = particles > 0 ? scene : with_planes(scene, static_cast<int>(std::lround(each * ranks)), schemas);
-            StepShape shape = o.shape;
-            shape.particles = each * ranks;
-            const StepTraffic sent = kind.parallel.traffic(other, one_between(other, kind, ranks), shape);
-            list.push_back(model_step(units * o.seconds_each, sent, ranks, o.link));
-        } catch (const BadInput&) {  // in a shorter domain there may be no place for an emitter
-        }
+    for (int ranks = 2; ranks <= most_ranks; ranks *= 2) {
+        RankTraffic of_step = sent;
+        of_step.received *= static_cast<double>(ranks) / counted;
+        list.push_back(model_step(units * o.seconds_each, of_step, ranks, o.link));
+    }
     return list;
+}
+
+/// The messages of a run's loop after each step: whether rank 0 could write, and whether a stop was requested.
+void loop_of_run() {
+    for (int i = 0; i < 2; ++i) communicator().largest(0);
+}
+
+struct Said {
+    RankTraffic sent;
+    double iterations;
+};
+
+RankTraffic per_step(const RankTraffic& all, int steps) {
+    const auto mean = [&](const Traffic& t) { return Traffic{t.messages / steps, t.bytes / steps}; };
+    return {mean(all.beside), mean(all.everywhere), all.rounds / steps, all.received / steps};
 }
 
 }  // namespace
@@ -133,7 +126,31 @@ Link measure_link() {
     return link;
 }
 
-ModelStep model_step(double computing, const StepTraffic& sent, int ranks, const Link& link) {
+CountedSteps count_messages(const scene::Scene& scene, int ranks, int first, int steps, const std::vector<scene::SolverKind>& kinds) {
+    const auto ends = fork_ranks(ranks, [&](ForkedRanks& self) {
+        Simulation simulation(scene, kinds);
+        RankTraffic before;
+        double iterations = 0;
+        for (int step = 0; step < first + steps; ++step) {
+            if (step == first) before = self.counts();
+            const StepReport report = simulation.step();
+            loop_of_run();
+            if (step >= first) iterations += report.iterations;
+        }
+        const Said said{self.counts().since(before), iterations / steps};
+        return std::string(reinterpret_cast<const char*>(&said), sizeof said);
+    });
+    CountedSteps counted;
+    for (const ForkedEnd& end : ends) {
+        if (end.status != 0) throw BadInput("the scene could not be tried on " + std::to_string(ranks) + " ranks: " + end.said);
+        Said said;
+        std::memcpy(&said, end.said.data(), sizeof said);
+        counted.sent.push_back(said.sent), counted.iterations = said.iterations;
+    }
+    return counted;
+}
+
+ModelStep model_step(double computing, const RankTraffic& sent, int ranks, const Link& link) {
     if (ranks == 1) return {1, computing, 0};
     const double hops = std::ceil(std::log2(ranks));
     const auto all = static_cast<double>(sent.everywhere.messages), beside = static_cast<double>(sent.rounds) - all;
@@ -151,10 +168,6 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
                        .replicated_work = shares.replicated_work,
                        .link = link ? *link : measure_link(),
                        .seconds_each = 1e-3 * f.ms / f.count};
-    o.shape = {.iterations = static_cast<int>(std::lround(f.iterations)),
-               .cells_crossed = std::max(1, static_cast<int>(std::ceil(f.most_cfl))),
-               .particles = f.particles ? f.count : 0,
-               .viscous_iterations = static_cast<int>(std::lround(f.viscous_iterations))};
     o.cut = shares.cut;
     {
         const DryRun several(0, ranks);
@@ -163,14 +176,18 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
     }
     const std::vector<double> parts = o.own_part && !o.cut.empty() ? sim::parts_of_planes(scene, kinds) : std::vector<double>{};
     for (int rank = 0; rank < ranks; ++rank) {
-        const RankOf of{.cut = o.cut, .rank = rank, .ranks = ranks};
-        o.bytes.push_back(!o.own_part       ? f.held.bytes
-                          : !of.cut.empty() ? sim::bytes_of_rank(f.held.bytes, of.cut, rank, parts)
-                                            : f.held.bytes * part_of_particles(scene, rank, ranks));
+        o.bytes.push_back(!o.own_part      ? f.held.bytes
+                          : !o.cut.empty() ? sim::bytes_of_rank(f.held.bytes, o.cut, rank, parts)
+                                           : f.held.bytes * part_of_particles(scene, rank, ranks));
         o.surface_bytes.push_back(sim::surface_bytes_of_rank(scene, f.held, rank, ranks));
-        if (ranks > 1 && kind.parallel.traffic) o.sent.push_back(kind.parallel.traffic(scene, of, o.shape));
     }
-    if (!o.sent.empty() && !o.nothing_shared) o.weak = weak_scaling(scene, kinds, o, o.shape.particles);
+    if (ranks == 1) return o;
+    constexpr int first = 1, steps = 2;
+    const CountedSteps counted = count_messages(scene, std::min(ranks, most_tried), first, steps, kinds);
+    for (const RankTraffic& sent : counted.sent) o.sent.push_back(per_step(sent, steps));
+    o.iterations = counted.iterations;
+    if (!o.nothing_shared)
+        o.weak = weak_scaling(scene, o, o.sent[o.sent.size() / 2], static_cast<int>(o.sent.size()), f.particles ? f.count : 0);
     return o;
 }
 
@@ -215,15 +232,18 @@ std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate
         if (planes) s += fmt::format("  planes {:5} to {:5}", o.cut.begin(r), o.cut.end(r, o.cut.planes()) - 1);
         s += fmt::format("  {:>10.4g} MB", o.bytes[rank] / 1e6);
         if (o.surface_bytes[rank] > 0) s += fmt::format(", {:.4g} MB additional for surface reconstruction", o.surface_bytes[rank] / 1e6);
-        if (!o.sent.empty())
+        if (o.sent.size() == o.bytes.size())
             s += fmt::format("  {:6} messages {:>12} bytes per step", o.sent[rank].all().messages, o.sent[rank].all().bytes);
         s += "\n";
     }
-    if (o.sent.empty()) return s + "  no estimate of the messages of this solver\n";
-    s += fmt::format("  for a step of {} iteration(s) in which motion crosses at most {} cell(s)\n", o.shape.iterations,
-                     o.shape.cells_crossed);
-    if (const auto& besides = o.sent[0].besides; !besides.empty())
-        s += fmt::format("  not counted: messages of {}\n", fmt::join(besides, ", "));
+    const int tried = static_cast<int>(o.sent.size());
+    if (tried < o.ranks) {
+        const Traffic sent = o.sent[o.sent.size() / 2].all();
+        s += fmt::format("  a rank between two others sends {} messages, {} bytes per step, on {} ranks\n", sent.messages, sent.bytes,
+                         tried);
+    }
+    s += fmt::format("  counted in steps 2 and 3 of the scene on {} processes of this machine, {:.1f} iteration(s) per step\n", tried,
+                     o.iterations);
     return o.nothing_shared ? s : s + weak_text(o, f);
 }
 

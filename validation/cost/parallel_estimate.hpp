@@ -1,8 +1,8 @@
-// What a scene takes over several ranks, before it runs: planes, memory and messages of each, by the formulas of its solver
-// (ParallelSupport::traffic), and how its steps would get on where grid and ranks grow together (weak scaling), by a model of three constants:
-// seconds a cell or particle, a message's latency, bytes a second.
+// What a scene takes over several ranks, before it runs in parallel: planes, memory and messages of each rank. Messages are counted in a
+// few steps of the scene by forked ranks of this machine (parallel/forked_ranks.hpp). How its steps would get on where grid and ranks grow
+// together (weak scaling) is a model of three constants: seconds a cell or particle, a message's latency, bytes a second.
 #pragma once
-#include "parallel/traffic.hpp"
+#include "parallel/forked_ranks.hpp"
 #include "validation/cost/cost_estimate.hpp"
 
 #include <optional>
@@ -29,18 +29,31 @@ struct ModelStep {
 
 struct ParallelEstimate {
     int ranks = 1;
-    Partition cut{};                    // empty where particles are shared
+    Partition cut{};              // empty where particles are shared
     bool own_part = false;        // each holds its own planes alone
     bool nothing_shared = false;  // every rank does all of it
     scene::ReplicatedWorks replicated_work{};
     std::vector<double> bytes{};          // that each holds
     std::vector<double> surface_bytes{};  // more while output.surface is made
-    StepShape shape{};
-    std::vector<StepTraffic> sent{};  // by each, a step; empty where the solver has no formula
+    /// Sent per step by each of the ranks on which the scene was tried, at most most_tried.
+    std::vector<RankTraffic> sent{};
+    double iterations = 0;  // of a step in which these were counted
     Link link{};
     double seconds_each = 0;        // a cell or particle and step, on one rank
     std::vector<ModelStep> weak{};  // as many planes a rank as here, on more and more of them
 };
+
+/// Messages are counted on at most as many ranks: those of a rank between two others do not depend on their number.
+inline constexpr int most_tried = 8;
+
+/// What each of several ranks sends in some steps, and the iterations of a step.
+struct CountedSteps {
+    std::vector<RankTraffic> sent{};
+    double iterations = 0;
+};
+/// Counts it on forked ranks in `steps` steps of a scene, after the first `first` ones. Throws BadInput where the scene cannot be tried.
+CountedSteps count_messages(const scene::Scene& scene, int ranks, int first, int steps,
+                            const std::vector<scene::SolverKind>& kinds = sim::registry());
 
 /// Refuses as the run itself would (sim::require_ranks). Without a link this machine's is measured.
 ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstimate& f, int ranks,
@@ -49,6 +62,6 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
 std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate& f, const scene::Scene& scene);
 
 /// The model: a round between neighbours takes the latency, one of all as many as the logarithm of their number, and bytes their time.
-ModelStep model_step(double computing, const StepTraffic& sent, int ranks, const Link& link);
+ModelStep model_step(double computing, const RankTraffic& sent, int ranks, const Link& link);
 
 }  // namespace weir::validation

@@ -189,7 +189,8 @@ SolidLoad<D> load_over(const OwnPlanes& own, int planes, F&& of_plane) {
     std::vector<SolidLoad<D>> part(static_cast<std::size_t>(planes));
     for_each_plane(own, 0, planes, [&](int plane) { part[static_cast<std::size_t>(plane)] = of_plane(plane); });
     SolidLoad<D> sum;
-    for (int d = 0; d < D; ++d) sum.force[d] = plane_sum(own, planes, [&](int plane) { return part[static_cast<std::size_t>(plane)].force[d]; });
+    for (int d = 0; d < D; ++d)
+        sum.force[d] = plane_sum(own, planes, [&](int plane) { return part[static_cast<std::size_t>(plane)].force[d]; });
     for (std::size_t k = 0; k < sum.torque.size(); ++k)
         sum.torque[k] = plane_sum(own, planes, [&](int plane) { return part[static_cast<std::size_t>(plane)].torque[k]; });
     return sum;

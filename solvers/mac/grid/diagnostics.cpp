@@ -127,14 +127,14 @@ FieldSet field_set(const MacState<D>& s) {
     return set;
 }
 
-#define WEIR_INSTANTIATE(D)                                                   \
-    template real kinetic_energy(const MacState<D>&);                         \
-    template Vec<D> momentum(const MacState<D>&);                             \
-    template real enstrophy(const MacState<D>&);                              \
-    template real integral(const MacState<D>&, const Grid<real, D>&);         \
-    template std::vector<Integral> integrals(const MacState<D>&);             \
+#define WEIR_INSTANTIATE(D)                                                                     \
+    template real kinetic_energy(const MacState<D>&);                                           \
+    template Vec<D> momentum(const MacState<D>&);                                               \
+    template real enstrophy(const MacState<D>&);                                                \
+    template real integral(const MacState<D>&, const Grid<real, D>&);                           \
+    template std::vector<Integral> integrals(const MacState<D>&);                               \
     template void vorticity(const MacState<D>&, const Extent<D>&, std::vector<Grid<real, D>>&); \
-    template GridView grid_view(const MacVelocity<D>&);                       \
+    template GridView grid_view(const MacVelocity<D>&);                                         \
     template FieldSet field_set(const MacState<D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -1,7 +1,7 @@
 // Distributed storage of a scene on a staggered grid: whether it is possible, and how.
 #pragma once
-#include "parallel/slab.hpp"
 #include "parallel/partition.hpp"
+#include "parallel/slab.hpp"
 #include "scene/replicated_work.hpp"
 #include "scene/scene.hpp"
 

@@ -75,7 +75,7 @@ private:
     Coloured<float> p_{};
     bool windowed_ = false;
     bool at_zero_ = false;  // x is zero, whatever its memory contains
-    OwnPlanes own_{};  // of the problem
+    OwnPlanes own_{};       // of the problem
     std::vector<PlaneSums> sums_;
     real gamma_ = 0, delta_ = 0;
 };

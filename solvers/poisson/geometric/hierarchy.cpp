@@ -268,7 +268,8 @@ std::size_t Hierarchy<D>::bytes() const {
 }
 
 template <int D>
-std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Partition& cut) {
+std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight,
+                                    const Partition& cut) {
     std::array<bool, D> wraps = periodic;
     for (int a = 0; a < D; ++a) wraps[static_cast<std::size_t>(a)] = wraps[static_cast<std::size_t>(a)] && n[a] > 1;
     auto levels = levels_below(finest_of<D>(n, wraps, axis_weight, true));

@@ -41,6 +41,7 @@ private:
 
 /// The levels of such a problem without their memory, the large ones partitioned like the finest; none where the shape is not supported.
 template <int D>
-std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight, const Partition& cut);
+std::vector<Level<D>> cut_levels_of(const Index<D>& n, const std::array<bool, D>& periodic, const Vec<D>& axis_weight,
+                                    const Partition& cut);
 
 }  // namespace weir::poisson

@@ -103,7 +103,7 @@ struct Level {
     float* zero = nullptr;
     std::uint8_t* fluid = nullptr;
 
-    Partition cut{};                 // in parallel: the partition of planes; empty for replicated work
+    Partition cut{};           // in parallel: the partition of planes; empty for replicated work
     std::vector<char> held{};  // planes stored on this rank; empty where it stores all
 
     std::size_t cells() const { return product(at.n); }

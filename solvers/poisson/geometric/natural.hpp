@@ -119,11 +119,11 @@ private:
     std::vector<Run> runs_;
     int closed_ = 0;
     std::int64_t fluid_cells_ = 0;
-    std::vector<real> size_;                       // cells of each closed component
-    mutable std::vector<real> mean_, sum_;         // of components, of this rank's runs
+    std::vector<real> size_;                // cells of each closed component
+    mutable std::vector<real> mean_, sum_;  // of components, of this rank's runs
     mutable std::vector<ExactSum> component_sum_;
     std::vector<std::size_t> first_runs_;  // per rank
-    std::vector<int> root_, number_;               // scratch of find_closed: root of each run, component of each root
+    std::vector<int> root_, number_;       // scratch of find_closed: root of each run, component of each root
     std::vector<char> open_;
 };
 

@@ -11,8 +11,8 @@ namespace weir::poisson {
 class PetscEngine {
 public:
     virtual ~PetscEngine() = default;
-    /// Takes this rank's rows of the matrix, as partitioned by equal_partition, and sets up the preconditioner. `components`: the null space of the
-    /// matrix; it must outlive all solves.
+    /// Takes this rank's rows of the matrix, as partitioned by equal_partition, and sets up the preconditioner. `components`: the null
+    /// space of the matrix; it must outlive all solves.
     virtual void prepare(const Matrix& A, const Components& components) = 0;
     /// Conjugate gradients starting at x, until `wants_more`, called with ‖b − A x‖₂ after each iteration, returns false, or PETSc finds no
     /// further gain. In parallel each rank improves its rows of x. Throws std::runtime_error with PETSc's message.

@@ -1,6 +1,7 @@
 // Who owns which planes and what travels: arithmetic that all ranks do alike, against its definition; and that one rank asks for nothing.
 #include "parallel/grid.hpp"
 #include "parallel/load_balance.hpp"
+#include "support/forked_ranks.hpp"
 #include "support/test.hpp"
 
 #include <numeric>
@@ -130,53 +131,50 @@ TEST("a slab is this rank's part of a partition; the planes beyond the ends of t
     EXPECT_FALSE(replicated<2>(extent).own.distributed());
 }
 
-/// Two ranks of which the other answers with a plane's own number, as a rank whose planes hold those would.
-class Echo final : public Communicator {
-public:
-    Echo() : Communicator(1, 2) {}
-    void gather(const Partition& cut, const Planes& planes) override {
-        auto* values = static_cast<real*>(planes.first);
-        for (int plane = 0; plane < cut.end(0, planes.count); ++plane) values[plane] = plane;
-    }
-};
-
-TEST("in parallel a loop does its own planes, and a sum adds those of all ranks in the order of the planes") {
-    set_communicator(std::make_unique<Echo>());
-    const OwnPlanes own(slab_of(equal_partition(16, 2)));
-    EXPECT_TRUE(own.distributed());
-    std::vector<int> seen(17, 0);
-    for_each_plane(own, 0, 17, [&](int plane) { seen[static_cast<std::size_t>(plane)] = 1; });  // 17: faces
-    for (int plane = 0; plane < 17; ++plane) EXPECT_EQ(seen[static_cast<std::size_t>(plane)], plane >= 8 ? 1 : 0);
-    EXPECT_EQ(plane_sum(own, 16, [](int plane) { return real(plane); }), 120);
-    EXPECT_EQ(plane_max(own, 16, [](int plane) { return -real(plane); }), 7);  // of the other's, which echo their numbers
-    const OwnPlanes all;
-    EXPECT_FALSE(all.distributed());
-    EXPECT_EQ(plane_max(all, 16, [](int plane) { return -real(plane); }), 0);
-    set_communicator(nullptr);
+TEST("in parallel a loop does its own planes, and a sum adds those of all ranks, exactly") {
+    for (const int ranks : {1, 2, 3})
+        test::on_ranks(ranks, [ranks] {
+            const OwnPlanes own(slab_of(equal_partition(16, ranks)));
+            EXPECT_EQ(own.distributed(), ranks > 1);
+            const int begin = 16 * communicator().rank() / ranks, last = communicator().rank() + 1 == ranks;
+            std::vector<int> seen(17, 0);
+            for_each_plane(own, 0, 17, [&](int plane) { seen[static_cast<std::size_t>(plane)] = 1; });  // 17: faces
+            EXPECT_EQ(seen[0], communicator().rank() == 0);
+            EXPECT_EQ(seen[16], last);
+            if (ranks == 2) {
+                EXPECT_EQ(seen[7] + 10 * seen[8], begin == 0 ? 1 : 10);
+            }
+            const auto term = [](int plane) { return plane == 3 ? 1e20 : plane == 12 ? -1e20 : real(plane); };
+            EXPECT_EQ(plane_sum(own, 16, term), 120 - 3 - 12);  // lost in a sum in floating point
+            EXPECT_EQ(plane_max(own, 16, [](int plane) { return -real(plane); }), 0);
+            EXPECT_TRUE(std::isnan(plane_max(own, 16, [](int plane) { return plane == 9 ? std::nan("") : 1; })));
+            EXPECT_EQ(sum_of_ranks(own, std::int64_t{communicator().rank() + 1}), ranks * (ranks + 1) / 2);
+        });
 }
 
 TEST("loops and sums over a grid follow its extent; over a replicated box they cover all of it on every rank") {
-    set_communicator(std::make_unique<Echo>());
-    const Index<2> cells{{3, 16}};
-    const Grid<real, 2> q(Extent<2>(cells, OwnPlanes(slab_of(equal_partition(16, 2)))), 1);
-    EXPECT_TRUE(q.own().distributed() && !q.own().distributed_storage());
-    EXPECT_EQ(q.bytes(), q.size() * sizeof(real));  // all planes are stored
-    const auto one = [](const Index<2>&) { return 1.0; };
-    const auto visited = [](const Index<2>& lo, const Extent<2>& hi) {
-        std::vector<int> cells_in_plane(32, 0);
-        for_each_in(lo, hi, [&](const Index<2>& I) { ++cells_in_plane[static_cast<std::size_t>(I[1])]; });
-        return std::accumulate(cells_in_plane.begin(), cells_in_plane.end(), 0);
-    };
-    EXPECT_EQ(sum_over(q.extent(), one), 28 + 8 * 3);  // 0 + 1 + ... + 7, which the other rank echoes
-    EXPECT_EQ(sum_over(replicated(cells), one), 48);
-    EXPECT_EQ(visited({}, q.extent()), 24);
-    EXPECT_EQ(visited({}, q.extent() + e<2>(1)), 27);
-    EXPECT_EQ(visited({}, q.extent().wider(2)), 30);
-    EXPECT_EQ(visited({}, replicated(cells)), 48);
-    EXPECT_EQ(visited(Index<2>{{1, 10}}, q.extent()), 12);
-    const Grid<real, 2> copy = q;
-    EXPECT_EQ(copy.own(), q.own());
-    set_communicator(nullptr);
+    test::on_ranks(2, [] {
+        const bool upper = communicator().rank() == 1;
+        const Index<2> cells{{3, 16}};
+        const Grid<real, 2> q(Extent<2>(cells, OwnPlanes(slab_of(equal_partition(16, 2)))), 1);
+        EXPECT_TRUE(q.own().distributed() && !q.own().distributed_storage());
+        EXPECT_EQ(q.bytes(), q.size() * sizeof(real));  // all planes are stored
+        const auto one = [](const Index<2>&) { return 1.0; };
+        const auto visited = [](const Index<2>& lo, const Extent<2>& hi) {
+            std::vector<int> cells_in_plane(32, 0);
+            for_each_in(lo, hi, [&](const Index<2>& I) { ++cells_in_plane[static_cast<std::size_t>(I[1])]; });
+            return std::accumulate(cells_in_plane.begin(), cells_in_plane.end(), 0);
+        };
+        EXPECT_EQ(sum_over(q.extent(), one), 48);
+        EXPECT_EQ(sum_over(replicated(cells), one), 48);
+        EXPECT_EQ(visited({}, q.extent()), 24);
+        EXPECT_EQ(visited({}, q.extent() + e<2>(1)), upper ? 27 : 24);
+        EXPECT_EQ(visited({}, q.extent().wider(2)), 30);
+        EXPECT_EQ(visited({}, replicated(cells)), 48);
+        EXPECT_EQ(visited(Index<2>{{1, 10}}, q.extent()), upper ? 12 : 0);
+        const Grid<real, 2> copy = q;
+        EXPECT_EQ(copy.own(), q.own());
+    });
 }
 
 }  // namespace
