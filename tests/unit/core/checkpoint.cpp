@@ -5,6 +5,7 @@
 #include "support/forked_ranks.hpp"
 #include "support/test.hpp"
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <vector>
