@@ -6,7 +6,7 @@ install(TARGETS ${libraries} EXPORT weirTargets COMPONENT library)
 set(WEIR_PUBLIC_HEADERS
   sim/simulation.hpp sim/probes.hpp sim/registry.hpp sim/thread_choice.hpp                           # a scene in, steps, fields and probes out
   scene/scene.hpp scene/schema.hpp scene/solver_kind.hpp                          # what a scene may say, and a solver of one's own
-  core/solver.hpp core/effects.hpp core/brush.hpp core/passes.hpp core/checkpoint.hpp core/error.hpp core/types.hpp core/parallel.hpp
+  core/solver.hpp core/effects.hpp core/brush.hpp core/passes.hpp core/checkpoint.hpp core/error.hpp core/types.hpp core/parallel.hpp core/exact_sum.hpp
   scene/replicated_work.hpp output/frames.hpp output/frame_format.hpp output/series_index.hpp)                                                              # VTK series
 install(CODE "set(headers \"${WEIR_PUBLIC_HEADERS}\")\nset(from \"${PROJECT_SOURCE_DIR}/solvers\")\nset(to \"${CMAKE_INSTALL_INCLUDEDIR}/weir\")" COMPONENT library)
 install(SCRIPT cmake/install_headers.cmake COMPONENT library)

@@ -137,7 +137,7 @@ struct Viscosity final : MacEffect<D> {
     }
     real max_dt(const MacState<D>& s) const override { return rule.time == Time::explicit_ ? explicit_limit<D>(s.nu, s.u.h) : infinity; }
     std::size_t bytes() const override {
-        std::size_t total = 0;
+        std::size_t total = sizeof(*this);
         for (const auto& axis : axes) total += axis.bytes();
         return total + (friction ? friction->bytes() : 0);
     }
@@ -213,7 +213,7 @@ struct Diffusion final : MacEffect<D> {
         return limit;
     }
     std::size_t bytes() const override {
-        std::size_t total = 0;
+        std::size_t total = list.capacity() * sizeof(Carried);
         for (const auto& carried : list) total += carried.diffuser ? carried.diffuser->bytes() : 0;
         return total;
     }

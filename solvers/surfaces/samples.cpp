@@ -16,7 +16,9 @@ void Samples::make_room(const Partition& cut) {
         return;
     }
     const int rank = communicator().rank();
-    depth = PlaneStore<float>(slab_of(cut, beyond), 0, plane(), count, 0, 0.0F);
+    const auto planes = std::make_shared<const Slab>(cut, rank, beyond, false);  // of this surface alone: those of the next may differ
+    depth = PlaneStore<float>(planes.get(), 0, plane(), count, 0, 0.0F);
+    slab = planes;
     layers = layers_of(cut, rank), own = {cut.begin(rank), cut.end(rank, count)};
     held = {std::max(0, own.begin - beyond), std::min(count, own.end + beyond)};
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 
 namespace weir::surfaces {
 
@@ -23,6 +24,7 @@ struct Samples {
     real unit = 1;            // [m]
     PlaneStore<float> depth;  // inside the liquid, in units; negative outside, clamped to [-1, 1]
     PlaneRange own{0, 0}, held{0, 0}, layers{0, 0};
+    std::shared_ptr<const Slab> slab{};  // of the planes of depth; nullptr: all
 
     /// Allocates all of them; in parallel, with this partition, those that this rank stores.
     void make_room(const Partition& cut = {});

@@ -37,14 +37,24 @@ struct Totals {
 template <std::size_t N, std::size_t M, class F>
 Totals<N, M> totals_of_lines(const ColumnPlaces& places, F&& f) {
     const int blocks = places.blocks_of_line(), first = places.own().begin * blocks;
-    std::vector<Totals<N, M>> parts(at(places.own().end * blocks - first));
-    for_each_block_of_lines(places, [&](int i, std::size_t begin, std::size_t end) { parts[at(i - first)] = f(begin, end); });
+    const auto count = at(places.own().end * blocks - first);
+    auto& parts = detail::reduction_scratch(count * (N + M));  // N sums and M maxima of each block
+    for_each_block_of_lines(places, [&](int i, std::size_t begin, std::size_t end) {
+        const Totals<N, M> part = f(begin, end);
+        const auto to = parts.begin() + static_cast<std::ptrdiff_t>(at(i - first) * (N + M));
+        std::copy(part.largest.begin(), part.largest.end(), std::copy(part.sums.begin(), part.sums.end(), to));
+    });
     struct OfRank {
         ExactSums<std::array<real, N>> sums{};
         Totals<N, M> most{};
         void add(const OfRank& other) { sums.add(other.sums), most.see(other.most.largest); }
     } all;
-    for (const auto& part : parts) all.sums.add(part.sums), all.most.see(part.largest);
+    for (std::size_t i = 0; i < count; ++i) {
+        Totals<N, M> part;
+        std::copy_n(&parts[i * (N + M)], N, part.sums.begin());
+        std::copy_n(parts.data() + i * (N + M) + N, M, part.largest.begin());
+        all.sums.add(part.sums), all.most.see(part.largest);
+    }
     all = sum_of_ranks(places.planes(), all);
     return {all.sums.value(), all.most.largest};
 }
