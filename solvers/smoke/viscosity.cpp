@@ -137,7 +137,7 @@ struct Viscosity final : MacEffect<D> {
     }
     real max_dt(const MacState<D>& s) const override { return rule.time == Time::explicit_ ? explicit_limit<D>(s.nu, s.u.h) : infinity; }
     std::size_t bytes() const override {
-        std::size_t total = sizeof(*this);
+        std::size_t total = sizeof(*this) + axes.capacity() * sizeof(Diffuser<D>);
         for (const auto& axis : axes) total += axis.bytes();
         return total + (friction ? friction->bytes() : 0);
     }
