@@ -13,7 +13,7 @@ endif()
 
 file(GLOB_RECURSE headers RELATIVE ${BUILD}/installed/include ${BUILD}/installed/include/*)
 list(LENGTH headers count)
-if(count LESS 5 OR count GREATER 19)
+if(count LESS 5 OR count GREATER 20)
   message(FATAL_ERROR "${count} headers are installed: ${headers}")
 endif()
 foreach(header ${headers})
