@@ -119,6 +119,7 @@ public:
         solver_->synchronize();
         return static_cast<const Solver&>(*solver_).fields();
     }
+    /// Volume, energy and other integrals over the domain; in parallel collective, as fields().
     std::vector<Integral> integrals() const {
         solver_->synchronize();
         return solver_->integrals();
