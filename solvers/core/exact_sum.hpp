@@ -25,7 +25,7 @@ public:
     }
     /// The same for many terms; about 1.5 ns each where their magnitudes are within 2^±30 of the first one's.
     void add(std::span<const real> terms);
-    void add(const ExactSum& other);
+    void add(const ExactSum& other);  ///< The terms of another sum.
     /// The sum, rounded to nearest, ties to even. (A subnormal result may be rounded twice.)
     real value() const;
 
@@ -63,16 +63,16 @@ private:
 template <class T>
 class ExactSums {
 public:
-    void add(const T& terms) {
+    void add(const T& terms) {  ///< One term of each component.
         const auto list = std::bit_cast<Reals>(terms);
         for (std::size_t i = 0; i < list.size(); ++i) sums_[i].add(list[i]);
     }
     /// The sum of the i-th component.
     ExactSum& of(std::size_t i) { return sums_[i]; }
-    void add(const ExactSums& other) {
+    void add(const ExactSums& other) {  ///< The terms of other sums.
         for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i].add(other.sums_[i]);
     }
-    T value() const {
+    T value() const {  ///< The sums, each rounded once.
         Reals list;
         for (std::size_t i = 0; i < list.size(); ++i) list[i] = sums_[i].value();
         return std::bit_cast<T>(list);
