@@ -183,9 +183,9 @@ scene::SolverKind kind() {
             {{"velocity", "depth", "surface", "bed"},
              {"move water"},
              "initial = { surface = \"0.5\", velocity = { name = \"formula\", x = \"0.1*sin(6*x)\" } }"},
-            {.check = check_parallel,
-             .distributed_storage = holds_own_rows,
-             .partition = [](const scene::Scene& scene, int ranks) { return partition_of_rows(Plane(scene), ranks); }}};
+            {.check = check_parallel, .distributed_storage = holds_own_rows, .partition = [](const scene::Scene& scene, int ranks) {
+                 return partition_of_rows(Plane(scene), ranks);
+             }}};
 }
 
 }  // namespace weir::heightfield

@@ -58,9 +58,7 @@ scene::SolverKind kind() {
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return make_without_surface<FlowSolver>(scene, partition); },
             {{"velocity", "pressure"}, {"ghosts", "advect velocity", "project"}, "initial.velocity = \"random\""},
-            {.check = check_parallel,
-             .replicated_work = mac::replicated_pressure,
-             .distributed_storage = mac::holds_own_planes}};
+            {.check = check_parallel, .replicated_work = mac::replicated_pressure, .distributed_storage = mac::holds_own_planes}};
 }
 
 }  // namespace weir::smoke

@@ -175,7 +175,6 @@ private:
     ColumnPlaces cleared_;     // the layout for which the line of zeros was cleared
 };
 
-
 /// Copies the columns at the ends of line z beyond its other end, where the axis is periodic.
 template <class T>
 void wrap_line(const ColumnPlaces& places, int z, T* values) {

@@ -148,14 +148,15 @@ TEST("mac_water: viscous liquid sends what was counted, with its iterations") {
 }
 
 TEST("solids that move, an emitter, a sink and probes send what was counted") {
-    expect_as_counted(pool +
-                          "dim = 2\ngrid = { cells = [24, 40], size = [0.24, 0.4] }\n"
-                          "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.24, 0.2] } ]\n"
-                          "solids = [ { shape = \"sphere\", centre = [0.1, 0.18], radius = 0.04, motion = { kind = \"constant\", velocity = "
-                          "[0.05, 0.0] } } ]\n"
-                          "emitters = [ { shape = \"box\", min = [0.16, 0.3], max = [0.2, 0.34], velocity = [0.0, -0.5] } ]\n"
-                          "probes = [ { name = \"p\", kind = \"point\", field = \"pressure\", at = [0.12, 0.1], every = 1e-4 } ]\n",
-                      {2, 3}, {1e-4, 4, 10});
+    expect_as_counted(
+        pool +
+            "dim = 2\ngrid = { cells = [24, 40], size = [0.24, 0.4] }\n"
+            "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.24, 0.2] } ]\n"
+            "solids = [ { shape = \"sphere\", centre = [0.1, 0.18], radius = 0.04, motion = { kind = \"constant\", velocity = "
+            "[0.05, 0.0] } } ]\n"
+            "emitters = [ { shape = \"box\", min = [0.16, 0.3], max = [0.2, 0.34], velocity = [0.0, -0.5] } ]\n"
+            "probes = [ { name = \"p\", kind = \"point\", field = \"pressure\", at = [0.12, 0.1], every = 1e-4 } ]\n",
+        {2, 3}, {1e-4, 4, 10});
 }
 
 const std::string still =
