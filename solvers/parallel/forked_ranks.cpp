@@ -19,11 +19,18 @@ namespace weir {
 
 namespace {
 
+constexpr int peer_ended = 2;  // exit status
+
 Traffic operator-(const Traffic& a, const Traffic& b) { return {a.messages - b.messages, a.bytes - b.bytes}; }
+
+/// Thrown by a rank that waits for one that has ended: a consequence, not the cause.
+struct PeerEnded : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 void advance(std::size_t& done, ssize_t bytes) {
     if (bytes > 0) done += static_cast<std::size_t>(bytes);
-    if (bytes == 0 || (bytes < 0 && errno != EAGAIN && errno != EINTR)) throw std::runtime_error("another rank has ended");
+    if (bytes == 0 || (bytes < 0 && errno != EAGAIN && errno != EINTR)) throw PeerEnded("another rank has ended");
 }
 
 void write_all(int file, const std::string& bytes) {
@@ -89,6 +96,9 @@ struct Wires {
     int status = 0;
     try {
         write_all(wires.pipes[rank][1], body(self));
+    } catch (const PeerEnded& failure) {
+        write_all(wires.pipes[rank][1], failure.what());
+        status = peer_ended;
     } catch (const std::exception& failure) {
         write_all(wires.pipes[rank][1], failure.what());
         status = 1;
@@ -239,8 +249,20 @@ std::vector<ForkedEnd> fork_ranks(int count, const std::function<std::string(For
         ends[r].said = read_all(wires.pipes[r][0]);
         close(wires.pipes[r][0]);
     }
-    for (std::size_t r = 0; r < n; ++r) waitpid(processes[r], &ends[r].status, 0);
+    for (std::size_t r = 0; r < n; ++r) {
+        int status = 0;
+        waitpid(processes[r], &status, 0);
+        ends[r].status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+        if (WIFSIGNALED(status)) ends[r].said = "rank " + std::to_string(r) + " was ended by signal " + std::to_string(WTERMSIG(status));
+    }
     return ends;
+}
+
+const ForkedEnd* cause_of_failure(const std::vector<ForkedEnd>& ends) {
+    const ForkedEnd* cause = nullptr;
+    for (const ForkedEnd& end : ends)
+        if (end.status != 0 && (!cause || cause->status == peer_ended)) cause = &end;
+    return cause;
 }
 
 }  // namespace weir

@@ -45,14 +45,17 @@ private:
     RankTraffic counts_;
 };
 
-/// The end of a forked rank: its exit status, 0 where body() returned, and the bytes that it returned.
+/// The end of a forked rank: its exit status, 0 where body() returned, 128 + the signal that ended it; and the bytes that it returned, or
+/// why it failed.
 struct ForkedEnd {
     int status = 0;
     std::string said{};
 };
 
 /// body() as each of `count` ranks, each in a process of its own with one thread; an exception is told with exit status 1. A rank that
-/// waits for one that has ended fails too. `seconds`: at most; 0: without limit.
+/// waits for one that has ended fails too, with status 2. `seconds`: at most; 0: without limit.
 std::vector<ForkedEnd> fork_ranks(int count, const std::function<std::string(ForkedRanks&)>& body, bool poisons = false, int seconds = 0);
+/// The first end that is no consequence of another's; null where no rank has failed.
+const ForkedEnd* cause_of_failure(const std::vector<ForkedEnd>& ends);
 
 }  // namespace weir

@@ -140,9 +140,10 @@ CountedSteps count_messages(const scene::Scene& scene, int ranks, int first, int
         const Said said{self.counts().since(before), iterations / steps};
         return std::string(reinterpret_cast<const char*>(&said), sizeof said);
     });
+    if (const ForkedEnd* cause = cause_of_failure(ends))
+        throw BadInput("the scene could not be tried on " + std::to_string(ranks) + " ranks: " + cause->said);
     CountedSteps counted;
     for (const ForkedEnd& end : ends) {
-        if (end.status != 0) throw BadInput("the scene could not be tried on " + std::to_string(ranks) + " ranks: " + end.said);
         Said said;
         std::memcpy(&said, end.said.data(), sizeof said);
         counted.sent.push_back(said.sent), counted.iterations = said.iterations;

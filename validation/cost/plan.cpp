@@ -20,15 +20,6 @@ const Variant* method_of(const Study& study, const CostCurve& curve) {
     return nullptr;
 }
 
-/// A word for a POSIX shell.
-std::string shell_word(const std::string& text) {
-    static constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./=,:@%";
-    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return word + "'";
-}
-
 std::string setting_text(const Choice& c, const Study& study) {
     const Variant* method = method_of(study, *c.curve);
     if (!method || !method->sweep) return c.curve->method.empty() ? "the only configuration" : c.curve->method;
@@ -94,6 +85,14 @@ Budget budget_of(const PlanOptions& options, const Study& study) {
 }
 
 }  // namespace
+
+std::string shell_word(const std::string& text) {
+    static constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./=,:@%";
+    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+}
 
 std::string run_line(const Study& study, const CostCurve& curve, const Priced& at, const Solvers& solvers) {
     const Variant* method = method_of(study, curve);

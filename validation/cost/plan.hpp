@@ -32,4 +32,7 @@ int plan_command(const PlanOptions& options, const Solvers& solvers = sim::regis
 /// the run measure the study's error.
 std::string run_line(const Study& study, const CostCurve& curve, const Priced& at, const Solvers& solvers = sim::registry());
 
+/// A word for a POSIX shell.
+std::string shell_word(const std::string& text);
+
 }  // namespace weir::validation

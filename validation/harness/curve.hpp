@@ -15,6 +15,7 @@ struct Curve {
     bool points = false;
     bool dashed = false;
     std::vector<std::string> names{};  // of its points, written beside them; empty: none
+    std::vector<real> half_widths{};   // of the band of each point, drawn as a vertical bar; empty: none
     std::size_t size() const { return x.size(); }
 };
 

@@ -30,7 +30,7 @@ bool drawable(const Panel& p, real x, real y) { return std::isfinite(x) && std::
 /// lost.
 Curve thinned(const Curve& c) {
     constexpr auto stretches = static_cast<std::size_t>(panel_width);
-    if (c.size() <= 4 * stretches || c.points || !c.names.empty()) return c;
+    if (c.size() <= 4 * stretches || c.points || !c.names.empty() || !c.half_widths.empty()) return c;
     Curve thin = c;
     thin.x.clear(), thin.y.clear();
     const auto keep = [&](std::size_t i) { thin.x.push_back(c.x[i]), thin.y.push_back(c.y[i]); };
@@ -54,6 +54,7 @@ std::vector<Curve> drawn_curves(const Panel& p) {
             if (!drawable(p, c.x[i], c.y[i])) continue;
             kept.x.push_back(c.x[i]), kept.y.push_back(c.y[i]);
             if (!c.names.empty()) kept.names.push_back(c.names[i]);
+            if (!c.half_widths.empty()) kept.half_widths.push_back(c.half_widths[i]);
         }
         if (kept.size() > 0) curves.push_back(std::move(kept));
     }
@@ -133,7 +134,10 @@ public:
           x_{.log = panel.x.log},
           y_{.log = panel.y.log} {
         for (const Curve& c : curves_)
-            for (std::size_t i = 0; i < c.size(); ++i) x_.include(c.x[i]), y_.include(c.y[i]);
+            for (std::size_t i = 0; i < c.size(); ++i) {
+                const real half = c.half_widths.empty() ? 0 : c.half_widths[i];
+                x_.include(c.x[i]), y_.include(c.y[i] - half), y_.include(c.y[i] + half);
+            }
         if (panel.shade.below > 0) y_.include(panel.shade.below);
         x_.widen(), y_.widen();
         std::size_t number = 0;
@@ -175,9 +179,13 @@ private:
             const Curve& c = curves_[k];
             const std::string block = fmt::format("$p{}c{}", number, k);
             data += block + " << EOD\n";
-            for (std::size_t i = 0; i < c.size(); ++i) data += fmt::format("{:.9g} {:.9g}\n", c.x[i], c.y[i]);
+            for (std::size_t i = 0; i < c.size(); ++i)
+                data +=
+                    fmt::format("{:.9g} {:.9g}{}\n", c.x[i], c.y[i], c.half_widths.empty() ? "" : fmt::format(" {:.9g}", c.half_widths[i]));
             data += "EOD\n";
             plots += fmt::format("{}{} using 1:2 {}", plots.empty() ? "plot " : ", \\\n     ", block, entries_[k].style.with());
+            if (!c.half_widths.empty())
+                plots += fmt::format(", \\\n     {} using 1:2:3 with yerrorbars lw 1.2 pt 0 lc rgb '{}'", block, entries_[k].style.colour);
         }
         return data + plots;
     }

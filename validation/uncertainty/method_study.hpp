@@ -1,0 +1,75 @@
+// The ladder of one method: its runs, what they cost, and the uncertainty of every asked quantity on every grid.
+#pragma once
+#include "validation/uncertainty/asked.hpp"
+#include "validation/uncertainty/band.hpp"
+#include "validation/uncertainty/ladder.hpp"
+#include "validation/uncertainty/run_store.hpp"
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace weir::validation {
+
+/// What limits a study.
+struct Limits {
+    double frame = 1.0 / 60;   // simulated seconds of a frame
+    double budget = infinity;  // computing seconds of a frame
+    double time_limit = 120;   // computing seconds of one run
+    int rungs = 4;             // grids of a ladder
+    bool checks = true;        // halved step, seeds, twin, keys that are not refined
+};
+
+/// A quantity on the grids of a ladder, coarse to fine.
+struct QuantityStudy {
+    Asked asked{};
+    std::vector<Value> values{};  // of each grid
+    std::optional<Band> band{};   // of the finest three
+    real step = 0, seeds = 0;     // part of the band from the time step, from the markers' seeds, on the finest grid
+    real width = std::numeric_limits<real>::quiet_NaN();  // of the finest grid: band + step + seeds
+    std::vector<real> error{};                            // bound of each grid's error: distance to the finest + width
+    std::string refused{};                                // why nothing is recommended
+    std::vector<std::string> not_refined{};               // "scheme.iterations = 4: doubled, the value moves by 1.2 mm"
+
+    const Value& finest() const { return values.back(); }
+};
+
+struct GridRun {
+    Grid grid{};
+    RecordedRun run{};
+};
+
+struct MethodStudy {
+    Method method{};
+    std::string solver_fails{};    // why there is no study
+    std::vector<GridRun> grids{};  // coarse to fine
+    std::vector<QuantityStudy> quantities{};
+    std::string left_out{};               // coarser grids, and why
+    std::optional<real> chaotic_after{};  // [s]
+    std::string twin{};                   // what the twin run changed
+    double foretold = 0;                  // computing seconds of the ladder, from its two coarsest grids
+    double spent = 0;                     // of all grids of the ladder
+    int next = 0;                         // number of the next finer grid
+    double next_seconds = 0;              // computing time of that grid, foretold
+
+    double seconds_per_frame(std::size_t grid, double frame) const { return grids[grid].run.seconds_per_frame(frame); }
+};
+
+using Tell = std::function<void(const std::string&)>;
+
+/// Runs the ladder of a method. `wishes`: one for each quantity, or none. Throws BadInput where a quantity is unknown.
+MethodStudy study_method(const scene::Scene& scene, const Method& method, const std::vector<Asked>& asked, const std::vector<Wish>& wishes,
+                         const Limits& limits, RunStore& store, const Solvers& solvers, const Tell& tell);
+
+/// Width, bounds and refusals of the quantities for the grids that were run.
+void assess(MethodStudy& study, const std::vector<Asked>& asked);
+
+/// Bands wider than this part of the scale are refused.
+inline constexpr real widest_band = 0.2;
+
+/// "1.7 mm": the value in a unit of a suitable size, with as many digits as `to` has significance (two digits of it).
+std::string text_with_unit(real value, const std::string& unit, real to);
+
+}  // namespace weir::validation

@@ -1,0 +1,67 @@
+#include "validation/uncertainty/run_store.hpp"
+
+#include "core/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/machine.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace weir::validation {
+namespace {
+
+/// FNV-1a (Fowler, Noll & Vo), 64 bits.
+std::uint64_t hash(const std::string& text) {
+    std::uint64_t value = 14695981039346656037ULL;
+    for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    return value;
+}
+
+/// What a run depends on: the program and the whole scene, not how it is written. Output changes no result.
+std::string key_of(const scene::Scene& scene) {
+    scene::Table root = scene.root();
+    root.erase("output"), root.erase("title");
+    const output::Machine machine = output::this_machine();
+    std::error_code none;
+    const auto written = std::filesystem::last_write_time("/proc/self/exe", none).time_since_epoch().count();
+    return fmt::format("{} {} {} {}\n{}", machine.version, machine.commit, machine.rounding, written, scene::to_toml(root));
+}
+
+bool has_metrics(const RecordedRun& run, const std::vector<std::string>& metrics) {
+    for (const auto& name : metrics)
+        if (run.measured.count(name) == 0 && !run.failure) return false;
+    return true;
+}
+
+}  // namespace
+
+RunStore::RunStore(std::filesystem::path folder, std::vector<std::string> metrics, double time_limit, const Solvers& solvers)
+    : folder_(std::move(folder)), metrics_(std::move(metrics)), time_limit_(time_limit), solvers_(&solvers) {}
+
+std::filesystem::path RunStore::file_of(const std::string& key) const { return folder_ / fmt::format("{:016x}.json", hash(key)); }
+
+bool RunStore::has(const scene::Scene& scene) const {
+    const std::string key = key_of(scene);
+    return runs_.count(key) > 0 || (!folder_.empty() && std::filesystem::exists(file_of(key)));
+}
+
+const RecordedRun& RunStore::run(const scene::Scene& scene) {
+    const std::string key = key_of(scene);
+    if (const auto known = runs_.find(key); known != runs_.end()) return known->second;
+    if (std::ifstream file(folder_ / file_of(key).filename()); !folder_.empty() && file) try {
+            RecordedRun kept = run_from_json({std::istreambuf_iterator<char>(file), {}});
+            if (has_metrics(kept, metrics_)) return runs_[key] = std::move(kept);
+        } catch (const BadInput&) {  // damaged, or of another version: made again
+        }
+    RecordedRun& made = runs_[key] = record_run(scene, metrics_, time_limit_, *solvers_);
+    seconds_ += made.seconds;
+    const bool out_of_time = made.failure && made.seconds > time_limit_;
+    if (!folder_.empty() && !out_of_time) output::write_file(file_of(key), to_json(made));
+    return made;
+}
+
+}  // namespace weir::validation
