@@ -4,6 +4,7 @@
 #include "scene/names.hpp"
 #include "sim/owners.hpp"
 #include "validation/harness/fitting.hpp"
+#include "validation/harness/named_quantity.hpp"
 #include "validation/metrics/samples.hpp"
 
 #include <fmt/format.h>
@@ -130,6 +131,32 @@ bool has_series(const RunRecord& run, const std::string& name) {
     }
 }
 
+/// The series of a quantity: of a probe, with or without "probe." before it, or of an integral.
+std::string series_of(const NamedQuantity& quantity, const RunRecord& run) {
+    return has_series(run, quantity.series) ? quantity.series : "probe." + quantity.series;
+}
+
+/// A quantity with a window or a statistic that metrics of cases have no word for: "right.height.max@0.8..", "front.time_of(>0.4)".
+std::optional<NamedQuantity> named_quantity(std::string_view name, const RunRecord& run) {
+    static const std::vector<std::string> more = {"end", "rms", "range", "time_of_max", "time_of_min", "period"};
+    const bool only_here = name.find_first_of("@(") != std::string_view::npos;
+    if (!only_here && !contains(more, split(name).operation)) return std::nullopt;
+    NamedQuantity quantity = parse_quantity(name);
+    if (quantity.is_vector()) throw BadInput(fmt::format("{} is no single number; weir plan compares curves and pictures", name));
+    if (!has_series(run, series_of(quantity, run))) return std::nullopt;
+    return quantity;
+}
+
+/// The unit of a probe's column, "height [m]": "m". "probe.NAME" is its first column, "probe.NAME.COLUMN" the one of that name.
+std::string unit_of_probe(std::string_view name, const RunRecord& run) {
+    name.remove_prefix(6);
+    const auto dot = std::min(name.find('.'), name.size());
+    const ProbeSeries& probe = run.probe(name.substr(0, dot));
+    const std::string& column = probe.columns.at(dot == name.size() ? 0 : probe.column_number(name.substr(dot + 1)));
+    const auto open = column.find(" [");
+    return open == std::string::npos ? "" : column.substr(open + 2, column.size() - open - 3);
+}
+
 real largest(const RunRecord& run, std::string_view field) {
     const FieldView& view = run.field(field);
     NormSum most{Norm::linf};
@@ -190,6 +217,8 @@ Quantity quantity_of(std::string_view name) {
 
 std::string unit_of(std::string_view name, const RunRecord& run) {
     if (const Metric* m = find_metric(name)) return m->unit;
+    if (const auto quantity = named_quantity(name, run)) return unit_of(*quantity, unit_of(series_of(*quantity, run), run));
+    if (name.starts_with("probe.") && has_series(run, std::string(name))) return unit_of_probe(name, run);
     const Name n = split(name);
     if (n.operation.ends_with("_relative") || n.operation == "drift" || n.operation == "change") return "";
     for (const Integral& i : run.integrals)
@@ -206,6 +235,7 @@ real measure(std::string_view name, const RunRecord& run, const Reference& refer
     if (has_series(run, std::string(name))) return statistic(run.series(name), "");  // an observed metric may have a dot in its name
     const Name n = split(name);
     if (contains(series_operations, n.operation) && has_series(run, n.subject)) return statistic(run.series(n.subject), n.operation);
+    if (const auto quantity = named_quantity(name, run)) return statistic_of(run.series(series_of(*quantity, run)), *quantity);
     return field_metric(n, run, reference);
 }
 
@@ -214,6 +244,7 @@ void check_metric(std::string_view name, const RunRecord& start, const Reference
     if (has_series(start, std::string(name))) return;
     const Name n = split(name);
     if (contains(series_operations, n.operation) && has_series(start, n.subject)) return;
+    if (named_quantity(name, start)) return;
     if (contains(field_operations, n.operation) && start.fields.find(n.subject)) {
         if (n.operation == "max") return;
         field_error(start, reference, n.subject, Norm::linf);

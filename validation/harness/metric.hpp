@@ -8,6 +8,9 @@
 //   <series>.max .min .mean      over the run
 //   <series>.drift               largest |value - first| / |first| over the run
 //   <series>.change              (last - first) / |first|
+//   <series>.end .rms .range .time_of_max .time_of_min .time_of(>LEVEL) .period, and any statistic with a window (@2.5, @0.8.., @0.8..2):
+//                                quantities as weir plan names them (harness/named_quantity.hpp). Without a window mean is over the rows,
+//                                with one it is over time
 //   steps, seconds, ns_per_cell_step
 // Metrics of one kind of case live in validation/metrics/ and are listed in metrics/registry.cpp.
 #pragma once

@@ -133,6 +133,7 @@ int Ladder::coarsest(std::string& left_out) const {
             left_out = fmt::format("{} cells and coarser: {} is {:.2g} cells thick; two are required", g.text(), thin.front().first,
                                    thin.front().second);
         } catch (const std::runtime_error& wrong) {  // BadInput, NumericalFailure
+            if (number == own_) throw;               // the scene itself is wrong
             const std::string what = wrong.what();
             left_out = fmt::format("{} cells and coarser: {}", g.text(), what.substr(0, what.find('\n')));
         }

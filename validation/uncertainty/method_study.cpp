@@ -16,6 +16,7 @@ constexpr double margin = 1.35;    // over a power law of two grids: measured on
 constexpr real rung_ratio = 1.45;  // of the cells of neighbouring grids
 constexpr real least_ratio = 1.2, most_ratio = 1.7;
 constexpr int most_grids = 12, fewest_grids = 3;
+constexpr std::size_t grids_before_chaos = 4;  // no finer grids for a value that chaos refuses
 
 /// y at number n by the power law through two grids; the power is kept between `low` and `high`.
 double by_power(int n, const GridRun& coarse, const GridRun& fine, double y0, double y1, double low, double high) {
@@ -50,6 +51,7 @@ public:
         return by_power(number, coarse, fine, coarse.run.seconds_per_frame(limits_->frame), fine.run.seconds_per_frame(limits_->frame), 0,
                         d + 1.5);
     }
+    const std::vector<scene::Override>& more() const { return more_; }
     bool affordable(int number) const { return seconds(number) <= limits_->time_limit && seconds_per_frame(number) <= limits_->budget; }
 
 private:
@@ -104,12 +106,20 @@ std::vector<int> rest_of_ladder(const MethodStudy& study, const Climber& climber
     }
 }
 
+/// After five grids, a grid that would take hundred times the limit is not worth climbing towards.
+bool out_of_reach(const MethodStudy& study, const Climber& climber, const std::vector<Wish>& wishes, const Limits& limits) {
+    const int wanted = number_for(study, wishes);
+    return study.grids.size() >= 5 && wanted > 0 && climber.seconds(wanted) > 100 * limits.time_limit;
+}
+
 /// From coarse to fine. The first two grids price the others; with a wish the ladder ends where it is met.
 void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std::vector<Asked>& asked, const std::vector<Wish>& wishes,
-           const Limits& limits, const Tell& tell) {
+           const Limits& limits, RunStore& store, const Tell& tell) {
     const int least = ladder.coarsest(study.left_out), own = std::max(ladder.own(), least);
     climber.add(numbers_of_ladder(least, own, limits.rungs, rung_ratio).front());
     climber.add(next_number(study.grids.front().grid.number, own));
+    assess(study, asked);
+    if (limits.checks && !study.grids.back().run.failure) study_coarsest_grid(study, ladder, climber.more(), store, tell);
     const bool to_own = wishes.empty() && limits.budget == infinity;
     for (bool first = true; !study.grids.back().run.failure; first = false) {
         const auto rest = rest_of_ladder(study, climber, own, to_own);
@@ -117,14 +127,16 @@ void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std
         if (first) {
             study.foretold = study.spent;
             for (const int number : rest) study.foretold += climber.seconds(number);
-            tell(fmt::format("{}: at most {} grids, {} to {} cells, {:.2g} s of computing", study.method.name, 2 + rest.size(),
-                             study.grids.front().grid.text(), ladder.grid(rest.back()).text(), study.foretold));
+            tell(fmt::format("{}: at most {} grids, {} to {} cells, {} of computing", study.method.name, 2 + rest.size(),
+                             study.grids.front().grid.text(), ladder.grid(rest.back()).text(), seconds_text(study.foretold)));
         }
         climber.add(rest.front());
         assess(study, asked);
-        if (!wishes.empty() && met(study, wishes)) break;
+        if (limits.checks && study.grids.size() == grids_before_chaos && !study.grids.back().run.failure)
+            study_chaos(study, ladder, climber.more(), store, tell);
+        if (refuse_after_chaos(study)) break;
+        if (!wishes.empty() && (met(study, wishes) || out_of_reach(study, climber, wishes, limits))) break;
     }
-    assess(study, asked);
     study.next = wishes.empty() || met(study, wishes) ? 0 : number_for(study, wishes);
     if (study.next > 0) study.next_seconds = climber.seconds(study.next);
 }
@@ -150,7 +162,8 @@ void assess(MethodStudy& study, const std::vector<Asked>& asked) {
             continue;
         }
         quantity.band = band(values, study.method.formal_order);
-        quantity.width = quantity.band->width + quantity.step + quantity.seeds;
+        quantity.finer = study.grids.back().grid.h / study.grids.front().grid.h;
+        quantity.width = quantity.band->width + quantity.finer * (quantity.step + quantity.seeds);
         for (const GridValue& v : values) quantity.error.push_back(distance(v.value, values.back().value) + quantity.width);
         const real scale = quantity.finest().scale;
         if (scale > 0 && quantity.width > widest_band * scale)
@@ -165,17 +178,18 @@ MethodStudy study_method(const scene::Scene& scene, const Method& method, const 
     const Ladder ladder(scene, method, solvers);
     const std::vector<scene::Override> pictures = picture_probes(asked, scene);
     Climber climber(ladder, study, limits, pictures, store, tell);
-    climb(study, climber, ladder, asked, wishes, limits, tell);
-    assess(study, asked);
+    climb(study, climber, ladder, asked, wishes, limits, store, tell);
     for (const GridRun& g : study.grids)
         if (g.run.failure) return study;
     if (limits.checks) {
-        study_other_influences(study, ladder, pictures, store, tell);
+        study_chaos(study, ladder, pictures, store, tell);
         assess(study, asked);
         refuse_after_chaos(study);
     }
     return study;
 }
+
+std::string seconds_text(double seconds) { return seconds < 10 ? fmt::format("{:.2g} s", seconds) : fmt::format("{:.0f} s", seconds); }
 
 std::string text_with_unit(real value, const std::string& unit, real to) {
     struct Prefix {

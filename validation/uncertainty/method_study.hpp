@@ -25,10 +25,11 @@ struct Limits {
 /// A quantity on the grids of a ladder, coarse to fine.
 struct QuantityStudy {
     Asked asked{};
-    std::vector<Value> values{};  // of each grid
-    std::optional<Band> band{};   // of the finest three
-    real step = 0, seeds = 0;     // part of the band from the time step, from the markers' seeds, on the finest grid
-    real width = std::numeric_limits<real>::quiet_NaN();  // of the finest grid: band + step + seeds
+    std::vector<Value> values{};                          // of each grid
+    std::optional<Band> band{};                           // of the finest three
+    real step = 0, seeds = 0;                             // differences on the coarsest grid: of a halved time step, of the markers' seeds
+    real finer = 1;                                       // cell of the finest grid over that of the coarsest, which reduces both
+    real width = std::numeric_limits<real>::quiet_NaN();  // of the finest grid: band + finer (step + seeds)
     std::vector<real> error{};                            // bound of each grid's error: distance to the finest + width
     std::string refused{};                                // why nothing is recommended
     std::vector<std::string> not_refined{};               // "scheme.iterations = 4: doubled, the value moves by 1.2 mm"
@@ -71,5 +72,8 @@ inline constexpr real widest_band = 0.2;
 
 /// "1.7 mm": the value in a unit of a suitable size, with as many digits as `to` has significance (two digits of it).
 std::string text_with_unit(real value, const std::string& unit, real to);
+
+/// "0.33 s", "52 s".
+std::string seconds_text(double seconds);
 
 }  // namespace weir::validation

@@ -16,6 +16,7 @@ constexpr int averages = 30;     // windows of a series, to compare twins
 constexpr int parts = 6;         // windows of a mean, for its band
 constexpr real student = 2.571;  // two-sided 95% of Student's t with five degrees of freedom
 constexpr int seeds = 3;
+constexpr std::size_t few_grids = 4;  // of a cheap ladder: coarse grids may damp what finer ones show
 
 /// A run with one more change; no value where the solver does not accept it or the run fails.
 const RecordedRun* changed_run(const Ladder& ladder, const Grid& grid, std::vector<scene::Override> more, const scene::Override& change,
@@ -36,8 +37,6 @@ real change_of(const QuantityStudy& quantity, std::size_t number, const Recorded
     return distance(value.samples, coarsest.samples);
 }
 
-real finer(const MethodStudy& study) { return study.grids.back().grid.h / study.grids.front().grid.h; }
-
 void halve_step(MethodStudy& study, const Ladder& ladder, const std::vector<scene::Override>& more, RunStore& store) {
     const GridRun& coarsest = study.grids.front();
     const bool fixed = ladder.scene(coarsest.grid).has("time.dt");
@@ -45,8 +44,7 @@ void halve_step(MethodStudy& study, const Ladder& ladder, const std::vector<scen
     const RecordedRun* run = changed_run(ladder, coarsest.grid, more, half, store);
     if (!run) return;
     for (std::size_t q = 0; q < study.quantities.size(); ++q)
-        if (const real change = change_of(study.quantities[q], q, *run); std::isfinite(change))
-            study.quantities[q].step = change * finer(study);
+        if (const real change = change_of(study.quantities[q], q, *run); std::isfinite(change)) study.quantities[q].step = change;
 }
 
 /// Twice the standard deviation over the seeds.
@@ -65,7 +63,7 @@ void vary_seeds(MethodStudy& study, const Ladder& ladder, const std::vector<scen
             sum += std::isfinite(change) ? change * change : 0;
         }
         // the difference of two seeds has twice the variance of one
-        if (!runs.empty()) study.quantities[q].seeds = 2 * std::sqrt(sum / (2 * static_cast<real>(runs.size()))) * finer(study);
+        if (!runs.empty()) study.quantities[q].seeds = 2 * std::sqrt(sum / (2 * static_cast<real>(runs.size())));
     }
 }
 
@@ -85,7 +83,7 @@ scene::Override change_for_twin(const scene::Scene& scene, const RecordedRun& ru
 }
 
 void run_twin(MethodStudy& study, const Ladder& ladder, const std::vector<scene::Override>& more, RunStore& store) {
-    const GridRun& second = study.grids.at(1);
+    const GridRun& second = study.grids.at(study.grids.size() - (study.grids.size() > few_grids ? 2 : 1));
     const scene::Override change = change_for_twin(ladder.scene(second.grid), second.run, study.twin);
     const RecordedRun* twin = changed_run(ladder, second.grid, more, change, store);
     if (!twin) return;
@@ -171,17 +169,22 @@ std::optional<real> time_of_parting(const Curve& one, const Curve& twin) {
     return std::nullopt;
 }
 
-void study_other_influences(MethodStudy& study, const Ladder& ladder, const std::vector<scene::Override>& more, RunStore& store,
-                            const Tell& tell) {
-    tell(fmt::format("{}: time step, seeds, chaos", study.method.name));
+void study_coarsest_grid(MethodStudy& study, const Ladder& ladder, const std::vector<scene::Override>& more, RunStore& store,
+                         const Tell& tell) {
+    tell(fmt::format("{}: time step, seeds, keys that are not refined", study.method.name));
     halve_step(study, ladder, more, store);
     vary_seeds(study, ladder, more, store);
-    run_twin(study, ladder, more, store);
     double_the_rest(study, ladder, more, store);
 }
 
-void refuse_after_chaos(MethodStudy& study) {
-    if (!study.chaotic_after) return;
+void study_chaos(MethodStudy& study, const Ladder& ladder, const std::vector<scene::Override>& more, RunStore& store, const Tell& tell) {
+    tell(fmt::format("{}: chaos", study.method.name));
+    run_twin(study, ladder, more, store);
+}
+
+bool refuse_after_chaos(MethodStudy& study) {
+    if (!study.chaotic_after) return false;
+    bool refused = false;
     for (QuantityStudy& quantity : study.quantities) {
         if (!quantity.band || quantity.asked.is_metric || before(quantity, study, *study.chaotic_after)) continue;
         if (quantity.asked.quantity.is_point()) {
@@ -189,6 +192,7 @@ void refuse_after_chaos(MethodStudy& study) {
                 "chaotic after t = {:.3g} s: with {} the value differs by more than 5% of its range. Ask for mean or "
                 "rms over a window, or for an earlier time",
                 *study.chaotic_after, study.twin);
+            refused = true;
             continue;
         }
         quantity.width = band_of_mean(quantity, study);
@@ -199,6 +203,7 @@ void refuse_after_chaos(MethodStudy& study) {
                                100 * quantity.width / quantity.finest().scale)
                  : "";
     }
+    return refused;
 }
 
 }  // namespace weir::validation

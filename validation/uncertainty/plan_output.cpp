@@ -15,9 +15,12 @@ namespace {
 using nlohmann::json;
 
 json quantity_json(const QuantityStudy& quantity) {
-    json j{{"quantity", quantity.asked.quantity.text}, {"unit", quantity.values.empty() ? "" : quantity.values.back().unit},
-           {"band", json_number(quantity.width)},      {"band_of_step", quantity.step},
-           {"band_of_seeds", quantity.seeds},          {"refused", quantity.refused},
+    json j{{"quantity", quantity.asked.quantity.text},
+           {"unit", quantity.values.empty() ? "" : quantity.values.back().unit},
+           {"band", json_number(quantity.width)},
+           {"band_of_step", quantity.finer * quantity.step},
+           {"band_of_seeds", quantity.finer * quantity.seeds},
+           {"refused", quantity.refused},
            {"not_refined", quantity.not_refined}};
     if (quantity.band) {
         j["band_of_grid"] = quantity.band->width, j["order"] = quantity.band->order, j["observed_order"] = quantity.band->observed_order;

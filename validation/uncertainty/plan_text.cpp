@@ -41,10 +41,10 @@ std::string question_text(const ScenePlan& plan) {
 
 std::string price_text(const MethodStudy& study) {
     if (study.grids.empty()) return "";
-    std::string s = fmt::format("{}: {} grids, {} to {} cells, {:.2g} s of computing", study.method.name, study.grids.size(),
-                                study.grids.front().grid.text(), study.grids.back().grid.text(), study.spent);
+    std::string s = fmt::format("{}: {} grids, {} to {} cells, {} of computing", study.method.name, study.grids.size(),
+                                study.grids.front().grid.text(), study.grids.back().grid.text(), seconds_text(study.spent));
     if (study.foretold > 0)
-        s += fmt::format(" (foretold: at most {:.2g} s; {:.2g} times the finest run)", study.foretold,
+        s += fmt::format(" (foretold: at most {}; {:.2g} times the finest run)", seconds_text(study.foretold),
                          study.spent / std::max(study.grids.back().run.seconds, 1e-9));
     s += "\n";
     if (!study.left_out.empty()) s += "  left out: " + study.left_out + "\n";
@@ -113,9 +113,10 @@ std::string notes(const PlannedMethod& planned, const ScenePlan& plan) {
             const std::string& unit = quantity.finest().unit;
             s += name + fmt::format("band of {}: {} of the grids, {} of the time step", quantity.asked.quantity.text,
                                     text_with_unit(quantity.band ? quantity.band->width : 0, unit, quantity.width),
-                                    text_with_unit(quantity.step, unit, quantity.width));
-            s += quantity.seeds > 0 ? fmt::format(", {} of the markers' seeds\n", text_with_unit(quantity.seeds, unit, quantity.width))
-                                    : "\n";
+                                    text_with_unit(quantity.finer * quantity.step, unit, quantity.width));
+            s += quantity.seeds > 0
+                     ? fmt::format(", {} of the markers' seeds\n", text_with_unit(quantity.finer * quantity.seeds, unit, quantity.width))
+                     : "\n";
         }
         for (const auto& key : quantity.not_refined) s += name + "not refined: " + key + "\n";
     }
@@ -130,8 +131,10 @@ std::string finer_text(const ScenePlan& plan) {
         const double finer = static_cast<double>(study.next) / study.grids.back().grid.number;
         std::vector<std::string> cells;
         for (const int n : study.grids.back().grid.cells) cells.push_back(n > 1 ? fmt::format("{:.0f}", n * finer) : "1");
-        s += fmt::format("{} would need about {} cells: {:.2g} s of computing\n", study.method.name, fmt::join(cells, " x "),
-                         study.next_seconds);
+        s += study.next_seconds > 100 * plan.limits.time_limit
+                 ? fmt::format("{}: no grid within reach meets it\n", study.method.name)
+                 : fmt::format("{} would need about {} cells: {} of computing\n", study.method.name, fmt::join(cells, " x "),
+                               seconds_text(study.next_seconds));
     }
     return s;
 }

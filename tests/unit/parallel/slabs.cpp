@@ -4,6 +4,7 @@
 #include "support/forked_ranks.hpp"
 #include "support/test.hpp"
 
+#include <csignal>
 #include <numeric>
 #include <set>
 
@@ -178,5 +179,25 @@ TEST("loops and sums over a grid follow its extent; over a replicated box they c
 }
 
 }  // namespace
+
+TEST("of forked ranks that fail the cause is told, not its consequences") {
+    const auto thrown = fork_ranks(3, [](ForkedRanks& self) -> std::string {
+        if (self.rank() == 1) throw std::runtime_error("no memory");
+        self.largest(0);  // waits for rank 1
+        return "";
+    });
+    ASSERT_NE(cause_of_failure(thrown), nullptr);
+    EXPECT_EQ(cause_of_failure(thrown)->said, "no memory");
+    EXPECT_EQ(cause_of_failure(thrown), &thrown[1]);
+    const auto killed = fork_ranks(2, [](ForkedRanks& self) -> std::string {
+        if (self.rank() == 1) std::raise(SIGKILL);
+        self.largest(0);
+        return "";
+    });
+    ASSERT_NE(cause_of_failure(killed), nullptr);
+    EXPECT_EQ(cause_of_failure(killed)->said, "rank 1 was ended by signal 9");
+    EXPECT_EQ(cause_of_failure(killed)->status, 128 + SIGKILL);
+    EXPECT_EQ(cause_of_failure(fork_ranks(2, [](ForkedRanks&) { return std::string("done"); })), nullptr);
+}
 
 }  // namespace weir

@@ -99,6 +99,26 @@ TEST("a probe is a series by its name, its first column, or by the name of a col
     EXPECT_THROW(check_metric("probe.behind.velocity_z", s.run, {}), BadInput);
 }
 
+TEST("quantities with a window or an event are metrics of any run") {
+    Sample s(4, 0);
+    s.run.probes = {{.name = "right", .columns = {"height [m]"}, .times = {0, 1, 2}, .values = {{3}, {2}, {4}}}};
+    s.run.integrals = {{"volume", "m^2", 3}};
+    s.run.history = {{.step = 0, .time = 0, .integrals = {2}}, {.step = 1, .time = 2, .integrals = {4}}};
+    EXPECT_EQ(measure("right.max@..1", s.run, {}), 3);
+    EXPECT_EQ(measure("right.height@1.5", s.run, {}), 3);
+    EXPECT_EQ(measure("probe.right.range", s.run, {}), 2);
+    EXPECT_EQ(measure("right.time_of(<2.5)", s.run, {}), 0.5);
+    EXPECT_EQ(measure("volume@1", s.run, {}), 3);
+    EXPECT_EQ(unit_of("right.max@..1", s.run), "m");
+    EXPECT_EQ(unit_of("right.time_of(<2.5)", s.run), "s");
+    EXPECT_EQ(unit_of("volume@1", s.run), "m^2");
+    EXPECT_EQ(unit_of("probe.right", s.run), "m");
+    EXPECT_NO_THROW(check_metric("right.max@..1", s.run, {}));
+    EXPECT_THROW(check_metric("left.max@..1", s.run, {}), BadInput);
+    EXPECT_THROW(check_metric("right.max@1..x", s.run, {}), BadInput);
+    EXPECT_THROW(check_metric("right.curve@1..", s.run, {}), BadInput);
+}
+
 TEST("a metric that the run or the reference cannot answer is refused by name") {
     const Sample s(4, 0);
     EXPECT_THROW(check_metric("nothing", s.run, exact()), BadInput);
