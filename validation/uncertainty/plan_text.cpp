@@ -13,6 +13,12 @@ constexpr double busy = 0.25;  // cores of other programs that are mentioned
 
 std::string milliseconds(double seconds) { return fmt::format("{:.2g} ms", 1e3 * seconds); }
 
+std::string duration(double seconds) {
+    return seconds < 120    ? fmt::format("{:.2g} s", seconds)
+           : seconds < 7200 ? fmt::format("{:.0f} min", seconds / 60)
+                            : fmt::format("{:.0f} h", seconds / 3600);
+}
+
 /// The quantity of the scene's own method, for scales and units; null where it has none.
 const Value* scale_of(const ScenePlan& plan, std::size_t q) {
     for (const PlannedMethod& m : plan.methods)
@@ -43,8 +49,8 @@ std::string price_text(const MethodStudy& study) {
     if (study.grids.empty()) return "";
     std::string s = fmt::format("{}: {} grids, {} to {} cells, {:.2g} s of computing", study.method.name, study.grids.size(),
                                 study.grids.front().grid.text(), study.grids.back().grid.text(), study.spent);
-    if (study.foretold > 0)
-        s += fmt::format(" (foretold: at most {:.2g} s; {:.2g} times the finest run)", study.foretold,
+    if (study.estimated > 0)
+        s += fmt::format(" (estimated: at most {:.2g} s; {:.2g} times the finest run)", study.estimated,
                          study.spent / std::max(study.grids.back().run.seconds, 1e-9));
     s += "\n";
     if (!study.left_out.empty()) s += "  left out: " + study.left_out + "\n";
@@ -128,10 +134,14 @@ std::string finer_text(const ScenePlan& plan) {
         const MethodStudy& study = m.study;
         if (m.other_equations() || study.next <= study.grids.back().grid.number || study.quantities.empty()) continue;
         const double finer = static_cast<double>(study.next) / study.grids.back().grid.number;
+        if (finer >= farthest) {
+            s += fmt::format("{} would need more than {:g} times as many cells per axis\n", study.method.name, farthest);
+            continue;
+        }
         std::vector<std::string> cells;
         for (const int n : study.grids.back().grid.cells) cells.push_back(n > 1 ? fmt::format("{:.0f}", n * finer) : "1");
-        s += fmt::format("{} would need about {} cells: {:.2g} s of computing\n", study.method.name, fmt::join(cells, " x "),
-                         study.next_seconds);
+        s += fmt::format("{} would need about {} cells: {} of computing\n", study.method.name, fmt::join(cells, " x "),
+                         duration(study.next_seconds));
     }
     return s;
 }
