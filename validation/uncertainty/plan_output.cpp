@@ -70,11 +70,6 @@ json method_json(const PlannedMethod& planned, const ScenePlan& plan) {
 
 std::string axis_title(const std::string& name, const std::string& unit) { return unit.empty() ? name : name + " [" + unit + "]"; }
 
-Curve recommended_point(const ScenePlan& plan, std::size_t q) {
-    const Value& value = plan.methods[plan.take->method].study.quantities[q].values[plan.take->grid];
-    return {.label = "recommended", .x = {1e3 * plan.take->seconds}, .y = {plotted(value)}, .points = true};
-}
-
 /// Value with its band against computing time per frame.
 Panel values_panel(const ScenePlan& plan, std::size_t q) {
     Panel panel{.title = plan.asked[q].quantity.text, .x = {"computing time per frame [ms]", true}};
@@ -93,7 +88,7 @@ Panel values_panel(const ScenePlan& plan, std::size_t q) {
         if (!curve.x.empty()) panel.curves.push_back(std::move(curve));
     }
     if (plan.limits.budget < infinity) panel.marks.push_back({1e3 * plan.limits.budget, "budget"});
-    if (plan.take) panel.curves.push_back(recommended_point(plan, q));
+    if (plan.take) panel.marks.push_back({1e3 * plan.take->seconds, "recommended"});
     return panel;
 }
 
