@@ -8,7 +8,7 @@
 #   movie RESULT        the frames of a run as a movie; a scene or a case is run first
 #   validate [...]      the claims of the cases
 #   cost [...]          error against computing time; --plan SCENE: estimate of a scene's cost
-#   plan CASE [...]     recommended configuration: --budget 16ms --error 2%
+#   plan SCENE [...]    value, error and computing time of a quantity: --of QUANTITY --error 5% --budget 4ms
 #   stability [...]     stability limits of solvers
 #   report              the page of published results
 #   list WHAT           solvers, effects, fields, studies, cases or devices
@@ -120,9 +120,9 @@ usage() {
 
 case "${1:-}" in
     build) build_all ;;
-    run | plan | picture | list | describe)
+    run | picture | list | describe)
         install_missing "${weir_needs[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
-    validate | cost | stability | report)
+    validate | cost | plan | stability | report)
         install_missing "${weir_needs[@]}" "${figures_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;
     movie)
         install_missing "${weir_needs[@]}" "${films_need[@]}" && build weir >&2 && exec "$here/build/release/weir" "$@" ;;

@@ -7,7 +7,9 @@
 #include "core/thread_count.hpp"
 #include "output/machine.hpp"
 #include "parallel/mpi/ranks.hpp"
+#include "scene/names.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +17,9 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
 
@@ -25,6 +29,16 @@ std::string version_text() {
     const auto machine = weir::output::this_machine();
     return "weir " + machine.version + " (" + machine.commit + ", " + machine.compiler + ", " + machine.build +
            (machine.options.empty() ? "" : ", " + machine.options) + ')';
+}
+
+/// Throws BadInput, with the nearest command, where the first word is no command.
+void require_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    std::vector<std::string> commands;
+    for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+    if (std::find(commands.begin(), commands.end(), argv[1]) != commands.end()) return;
+    throw weir::BadInput("weir has no command " + weir::scene::quote(argv[1]) + weir::scene::did_you_mean(argv[1], commands) + "\n    " +
+                         weir::scene::known(commands) + "\n    weir COMMAND --help prints the options of one");
 }
 
 int run(int argc, char** argv) {
@@ -45,6 +59,7 @@ int run(int argc, char** argv) {
     weir::app::add_live(app, exit_code);
     weir::app::add_list(app, exit_code);
     weir::app::add_describe(app, exit_code);
+    require_command(app, argc, argv);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

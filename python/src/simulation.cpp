@@ -25,15 +25,13 @@ namespace py = pybind11;
 
 namespace weir::python {
 
-namespace {
-
-using Changes = std::vector<std::pair<std::string, std::string>>;
-
 std::vector<scene::Override> overrides_of(const Changes& changes) {
     std::vector<scene::Override> overrides;
     for (const auto& [key, value] : changes) overrides.push_back({key, value});
     return overrides;
 }
+
+namespace {
 
 StatePtr build(scene::Scene scene) {
     sim::require_memory(scene, sim::registry(), sim::Use::run);

@@ -37,6 +37,10 @@ struct State {
 };
 using StatePtr = std::shared_ptr<State>;
 
+/// Keys of a scene and their new values as TOML text.
+using Changes = std::vector<std::pair<std::string, std::string>>;
+std::vector<scene::Override> overrides_of(const Changes& changes);
+
 /// Holds the simulation for one call that changes it. Throws BufferError where arrays look at it, RuntimeError where another thread does,
 /// BadInput inside the block of a field that is edited, whose end would undo the change.
 class Change {

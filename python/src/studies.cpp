@@ -6,6 +6,7 @@
 #include "validation/cost/plan.hpp"
 #include "validation/harness/runner.hpp"
 #include "validation/report/command.hpp"
+#include "validation/uncertainty/scene_plan.hpp"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -94,6 +95,30 @@ py::dict make_plan(const std::string& name, const std::string& error, const std:
                     "prices"_a = plan.prices);
 }
 
+/// plan.json of a scene, and the printed text. `options`: budget, frame, time_limit, with and out as the command takes them; an empty `out`
+/// keeps nothing.
+py::tuple plan_scene(const std::string& name, const std::vector<std::string>& of, const std::vector<std::string>& error,
+                     const std::map<std::string, std::string>& options, const Changes& set, const py::object& progress) {
+    const std::string& out = options.at("out");
+    const validation::ScenePlanOptions asked{.scene = name,
+                                             .set = overrides_of(set),
+                                             .of = of,
+                                             .error = error,
+                                             .budget = options.at("budget"),
+                                             .frame = options.at("frame"),
+                                             .time_limit = options.at("time_limit"),
+                                             .with = options.at("with"),
+                                             .out = out,
+                                             .keep = !out.empty()};
+    const auto [json, text] = [&] {
+        const py::gil_scoped_release release;
+        const auto plan = validation::plan_scene(asked, sim::registry(), [&](const std::string& run) { tell(progress, run); });
+        validation::keep_results(plan);
+        return std::pair(validation::plan_json(plan), validation::plan_text(plan));
+    }();
+    return py::make_tuple(json, text);
+}
+
 }  // namespace
 
 void add_studies(py::module_& module) {
@@ -101,6 +126,7 @@ void add_studies(py::module_& module) {
     module.def("validate", validate);
     module.def("cost", cost);
     module.def("plan", make_plan);
+    module.def("plan_scene", plan_scene);
 }
 
 }  // namespace weir::python

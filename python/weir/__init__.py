@@ -16,10 +16,11 @@ if "OMP_WAIT_POLICY" not in _os.environ:  # how long a thread spins for the next
 from ._weir import BadInput, NumericalFailure, OutputError, StepReport, __version__, build, set_threads, threads
 from .fields import Edit, Field, StaleField
 from .scene import to_toml
+from .scene_plan import Difference, PlannedGrid, PlannedMethod, PlannedQuantity, PlannedValue, ScenePlan, ScenePlanChoice
 from .simulation import Probe, Simulation
 from .studies import Choice, Claim, CostPoint, Plan, Verdicts, case_folder, cost, plan, validate
 
 __all__ = [
-    "BadInput", "Choice", "Claim", "CostPoint", "Edit", "Field", "NumericalFailure", "OutputError", "Plan", "Probe", "Simulation", "StaleField",
-    "StepReport", "Verdicts", "build", "case_folder", "cost", "plan", "set_threads", "threads", "to_toml", "validate",
+    "BadInput", "Choice", "Claim", "CostPoint", "Difference", "Edit", "Field", "NumericalFailure", "OutputError", "Plan", "PlannedGrid",
+    "PlannedMethod", "PlannedQuantity", "PlannedValue", "Probe", "ScenePlan", "ScenePlanChoice", "Simulation", "StaleField", "StepReport", "Verdicts", "build", "case_folder", "cost", "plan", "set_threads", "threads", "to_toml", "validate",
 ]

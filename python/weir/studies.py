@@ -5,7 +5,8 @@ import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from . import _weir
+from . import _weir, scene as _scene
+from .scene_plan import ScenePlan, scene_plan
 
 
 @dataclass(frozen=True)
@@ -106,11 +107,57 @@ def cost(case: "str | os.PathLike", size: str = "ci", methods: "Sequence[str]" =
     return [CostPoint(**point) for point in _weir.cost(str(case), size, list(methods), progress)]
 
 
-def plan(case: "str | os.PathLike", error: "str | float" = "", budget: "str | float" = "", frame: "str | float" = "",
-         tables: "str | os.PathLike" = "") -> Plan:
-    """Recommends a configuration for an error ("2%") and a budget of computing time per frame ("16ms"), from the tables of `weir cost`."""
-    result = _weir.plan(str(case), _text(error), _text(budget), _text(frame), str(tables))
+def plan(case: "str | os.PathLike | dict", error: "str | float | Sequence" = "", budget: "str | float" = "", frame: "str | float" = "",
+         tables: "str | os.PathLike" = "", *, of: "str | Sequence[str]" = (), with_: "str | Sequence[str]" = (), set: "dict | None" = None,
+         out: "str | os.PathLike | None" = None, time_limit: "str | float" = "",
+         progress: "Callable[[str], object] | None" = None) -> "Plan | ScenePlan":
+    """Recommends a configuration for an error and a budget of computing time per frame ("16ms", or a number of seconds).
+
+    Without `of`: of a case, from the tables of `weir cost`; error is "2%" or a number. Returns a Plan.
+    With `of`: of any scene, as `weir plan SCENE --of` does. A ladder of grids is run on one thread. Returns a ScenePlan.
+
+    case        a scene file, a case, or with `out` a dict, which is written to `out`/scene.toml
+    of          quantities, such as "right.height.max"
+    error       largest error: "5%" of the quantity's range or value, "2mm", or a number in its unit; one, or one per quantity
+    budget      computing time per frame on one thread; infinite if empty
+    frame       simulated time per frame; a sixtieth of a second if empty
+    with_       further methods, such as ["tallcell", "shallow_water"]
+    set         changes of keys, as of Simulation
+    out         folder of plan.json, plan.svg and the kept runs; without it nothing is kept, and a second call runs everything again
+    time_limit  computing time of one run at most; 60 s if empty
+    progress    progress(text) before each run; what it raises ends the plan
+
+    Raises BadInput where the scene is wrong, a quantity is unknown, another plan uses `out`, or an option does not fit.
+    """
+    quantities = [of] if isinstance(of, str) else list(of)
+    if not quantities:
+        if with_ or set or out is not None or time_limit:
+            raise _weir.BadInput("weir.plan: with_, set, out and time_limit require of: a quantity of the scene")
+        return _study_plan(case, error, budget, frame, tables)
+    if str(tables):
+        raise _weir.BadInput("weir.plan: tables belong to the study of a case; a quantity of a scene (of) is measured here")
+    errors = list(error) if isinstance(error, (list, tuple)) else [error] if error != "" else []
+    options = {"budget": _seconds(budget), "frame": _seconds(frame), "time_limit": _seconds(time_limit), "out": str(out or ""),
+               "with": with_ if isinstance(with_, str) else ",".join(with_)}
+    changes = [(key, _scene.value(v)) for key, v in (set or {}).items()]
+    return scene_plan(*_weir.plan_scene(_file(case, out), quantities, [_text(e) for e in errors], options, changes, progress))
+
+
+def _study_plan(case, error, budget, frame, tables):
+    result = _weir.plan(str(case), _text(error), _seconds(budget), _seconds(frame), str(tables))
     return Plan(take=result["take"] and Choice(**result["take"]), nearest=[Choice(**c) for c in result["nearest"]], prices=result["prices"])
+
+
+def _file(scene, out):
+    """The file of a scene, which a command can name."""
+    if isinstance(scene, (str, os.PathLike)):
+        return os.fspath(scene)
+    if not out:
+        raise _weir.BadInput("weir.plan: a scene as a dict requires out, the folder into which it is written")
+    file = pathlib.Path(out) / "scene.toml"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(_scene.to_toml(scene))
+    return str(file)
 
 
 def case_folder(name: "str | os.PathLike") -> pathlib.Path:
@@ -120,3 +167,8 @@ def case_folder(name: "str | os.PathLike") -> pathlib.Path:
 
 def _text(v):
     return v if isinstance(v, str) else repr(float(v))
+
+
+def _seconds(v):
+    """A time as the command takes it: numbers are seconds."""
+    return v if isinstance(v, str) else f"{float(v)!r}s"

@@ -14,12 +14,20 @@ using Points = std::vector<const CostPoint*>;
 
 constexpr double frame_ms = 1000.0 / 60;  // what there is at 60 frames a second
 
-std::string in_frames(const CostPoint& p) { return fmt::format("{:.3g} ms of each 16.7 ms frame", p.seconds_per_second * frame_ms); }
-
-std::string priced(const CostPoint& p, Price by) {
-    return by == Price::second ? fmt::format("{} ({:.3g} times real time)", in_frames(p), 1 / p.seconds_per_second)
-                               : fmt::format("{:.3g} ms per step", p.ms_per_step);
+std::string in_frames(const CostPoint& p) {
+    const double ms = p.seconds_per_second * frame_ms;
+    return p.seconds_per_second <= 1 ? fmt::format("{:.3g} ms of each 16.7 ms frame", ms)
+                                     : fmt::format("{:.3g} ms per frame of 16.7 ms", ms);
 }
+
+/// A run that is too short for the clock has no factor.
+std::string priced(const CostPoint& p, Price by) {
+    if (by == Price::step) return fmt::format("{:.3g} ms per step", p.ms_per_step);
+    return in_frames(p) + (p.seconds_per_second > 0 ? fmt::format(" ({:.3g} times real time)", 1 / p.seconds_per_second) : "");
+}
+
+/// A reference without an uncertainty distinguishes all errors, also from zero.
+bool within_reference(const Study& study, const CostPoint& p) { return study.known_to > 0 && p.error <= study.known_to; }
 
 std::string plain(const CostPoint& p) { return p.name().empty() ? "the only configuration" : p.name(); }
 
@@ -59,13 +67,18 @@ std::string ranks_at_good_enough(const StudyResult& result) {
 }
 
 std::string in_real_time(const Study& study, const Points& by_price) {
+    if (by_price.size() == 1) {
+        const CostPoint& only = *by_price.front();
+        return fmt::format("{} {} in real time: {}.", only.name().empty() ? "The only configuration" : only.name(),
+                           only.seconds_per_second <= 1 ? "runs" : "does not run", in_frames(only));
+    }
     Points fast;
     std::copy_if(by_price.begin(), by_price.end(), std::back_inserter(fast), [](auto* p) { return p->seconds_per_second <= 1; });
     if (fast.empty())
         return fmt::format("No configuration runs in real time; the nearest is {} with {}.", plain(*by_price.front()),
                            in_frames(*by_price.front()));
     const auto best = *std::min_element(fast.begin(), fast.end(), [](auto* a, auto* b) { return a->error < b->error; });
-    if (const auto as_good = std::count_if(fast.begin(), fast.end(), [&](auto* p) { return p->error <= study.known_to; }); as_good > 0)
+    if (const auto as_good = std::count_if(fast.begin(), fast.end(), [&](auto* p) { return within_reference(study, *p); }); as_good > 0)
         return fmt::format("{} of {} configurations run in real time, {} of them within the reference uncertainty.", fast.size(),
                            by_price.size(), as_good);
     return fmt::format("{} of {} configurations run in real time; the most accurate of them is {}: {} = {:.3g}, for {}.", fast.size(),
@@ -76,13 +89,17 @@ std::string along_the_front(const Study& study, const Points& by_price) {
     Points front;
     std::copy_if(by_price.begin(), by_price.end(), std::back_inserter(front), [](auto* p) { return p->on_front; });
     const CostPoint &from = *front.front(), &to = *front.back();
-    const bool to_the_limit = to.error <= study.known_to;
+    const bool to_the_limit = within_reference(study, to);
+    if (by_price.size() < 2) return "";  // nothing to compare with
     if (front.size() < 2)
         return fmt::format("{} is {}.", plain(from),
                            to_the_limit ? "the cheapest, and within the reference uncertainty" : "both the cheapest and the most accurate");
-    return fmt::format("From {}, the cheapest, to {}, {}, the error falls by a factor of {:.3g} for {:.3g} times the time.", plain(from),
-                       plain(to), to_the_limit ? "which is within the reference uncertainty" : "the most accurate", from.error / to.error,
-                       to.price(study.price) / from.price(study.price));
+    const std::string fall =
+        to.error > 0 ? fmt::format("by a factor of {:.3g}", from.error / to.error) : fmt::format("from {:.3g} to zero", from.error);
+    const double price = from.price(study.price), times = to.price(study.price) / price;
+    return fmt::format("From {}, the cheapest, to {}, {}, the error falls {}{}.", plain(from), plain(to),
+                       to_the_limit ? "which is within the reference uncertainty" : "the most accurate", fall,
+                       price > 0 ? fmt::format(" for {:.3g} times the time", times) : "");
 }
 
 /// Where most methods are no more accurate at their most expensive configuration than at their cheapest, that is what to know; nothing
@@ -97,7 +114,7 @@ std::string that_finer_does_not_pay(const Study& study, const Points& by_price) 
         if (end.first == end.second || std::max(first, last) <= study.known_to) continue;  // nothing can be told of it
         ++refined;
         if (last < first) continue;
-        const double times = end.second->price(study.price) / end.first->price(study.price);
+        const double cheapest = end.first->price(study.price), times = cheapest > 0 ? end.second->price(study.price) / cheapest : 1;
         ++worse, least = std::min(least, times), most = std::max(most, times);
     }
     if (refined < 2 || 2 * worse <= refined) return "";
@@ -109,7 +126,7 @@ std::string that_finer_does_not_pay(const Study& study, const Points& by_price) 
 
 /// What the reference cannot tell, where it has a limit that settings reach.
 std::string below_what_is_known(const Study& study, const Points& by_price) {
-    const auto within = [&](const CostPoint* p) { return p->error <= study.known_to; };
+    const auto within = [&](const CostPoint* p) { return within_reference(study, *p); };
     const auto first = std::find_if(by_price.begin(), by_price.end(), within);
     if (first == by_price.end()) return "";
     return fmt::format(
@@ -132,7 +149,7 @@ std::vector<std::string> advice(const StudyResult& result) {
     if (const std::string ranks = study.good_enough > 0 ? ranks_at_good_enough(result) : ""; !ranks.empty()) sentences.push_back(ranks);
     if (study.price == Price::second) sentences.push_back(in_real_time(study, by_price));
     const std::string in_vain = that_finer_does_not_pay(study, by_price);
-    sentences.push_back(in_vain.empty() ? along_the_front(study, by_price) : in_vain);
+    if (const std::string s = in_vain.empty() ? along_the_front(study, by_price) : in_vain; !s.empty()) sentences.push_back(s);
     if (const std::string limit = below_what_is_known(study, by_price); !limit.empty()) sentences.push_back(limit);
     const auto count = [&](auto holds) { return std::count_if(result.points.begin(), result.points.end(), holds); };
     if (const auto failed = count([](const CostPoint& p) { return p.failure && p.was_run(); }); failed > 0)

@@ -35,7 +35,7 @@ std::optional<PriceAt> price_at(const Envelope& method, real error) {
     if (reached == p.end()) return std::nullopt;
     if (reached == p.begin()) return PriceAt{reached->price, reached->error < error};
     const auto before = reached - 1;
-    if (reached->error <= 0 || before->error / reached->error > widest_fall) return PriceAt{reached->price, true};
+    if (before->price <= 0 || reached->error <= 0 || before->error / reached->error > widest_fall) return PriceAt{reached->price, true};
     return PriceAt{along_power(error, before->error, reached->error, before->price, reached->price), false};
 }
 
@@ -44,7 +44,7 @@ real error_at(const Envelope& method, double price) {
     const auto above = std::find_if(p.begin(), p.end(), [&](const auto& q) { return q.price > price; });
     if (above == p.begin()) return p.front().error;
     const auto before = above - 1;
-    if (above == p.end() || above->error <= 0 || before->error / above->error > widest_fall) return before->error;
+    if (above == p.end() || before->price <= 0 || above->error <= 0 || before->error / above->error > widest_fall) return before->error;
     return along_power(price, before->price, above->price, before->error, above->error);
 }
 
@@ -61,7 +61,7 @@ Ranking rank(const std::vector<Envelope>& methods, real error, real known_to) {
         const PriceAt first = *price_at(*order.front(), error), at = *price_at(*m, error);
         const bool as_cheap = m->points.front().price <= first.price;
         const bool alike = as_cheap && error_at(*m, first.price) - error_at(*order.front(), first.price) < known_to;
-        ranking.reached.push_back({m->label, at, at.price / first.price, m != order.front() && alike});
+        ranking.reached.push_back({m->label, at, first.price > 0 ? at.price / first.price : 1, m != order.front() && alike});
     }
     return ranking;
 }

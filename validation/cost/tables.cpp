@@ -79,10 +79,11 @@ std::string cost_table(const StudyResult& result) {
                      "s per sim. s", "ms/step", "MB", "steps", "spread");
     for (const CostPoint* p : by_price(result)) {
         s += fmt::format("  {} {:{}}  ", p->on_front ? "*" : " ", p->name(), width);
-        s += p->failure ? first_line(*p->failure) + "\n"
-                        : fmt::format("{:>11.4g} {:>12.4g} {:>10.4g} {:>9} {:>7} {:>7.0f}%{}\n", p->error, p->seconds_per_second,
-                                      p->ms_per_step, megabytes(p->bytes), p->steps, 100 * p->spread,
-                                      p->others > busy ? fmt::format("  others used {:.1f} cores", p->others) : "");
+        s += p->failure
+                 ? first_line(*p->failure) + "\n"
+                 : fmt::format("{:>11.4g} {:>12.4g} {:>10.4g} {:>9} {:>7} {:>8}{}\n", p->error, p->seconds_per_second, p->ms_per_step,
+                               megabytes(p->bytes), p->steps, p->repeats > 1 ? fmt::format("{:.0f}%", 100 * p->spread) : "-",
+                               p->others > busy ? fmt::format("  others used {:.1f} cores", p->others) : "");
     }
     s += "    * on the Pareto front: no other configuration is both cheaper and more accurate\n";
     for (const std::string& sentence : advice(result)) s += "  " + sentence + "\n";

@@ -87,8 +87,8 @@ std::string axis(const char* name, const Range& r) {
     std::string s = fmt::format("set {0}tics auto; set format {0} '%g'\nset {0}range [{1:.9g}:{2:.9g}]\n", name, r.low, r.high);
     if (!r.log) return s;
     s += fmt::format("set logscale {}\n", name);
-    if (r.high / r.low > 170) return s + fmt::format("set format {} '10^{{%T}}'\n", name);
-    // Less than two decades: ticks at some digits of each, or the axis would have one label or none.
+    if (r.high / r.low > 1700) return s + fmt::format("set format {} '10^{{%T}}'\n", name);
+    // Less than three decades: ticks at some digits of each, or the axis would have few labels or none.
     const std::vector<real> digits = r.high / r.low < 4    ? std::vector<real>{1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9}
                                      : r.high / r.low < 13 ? std::vector<real>{1, 1.5, 2, 3, 4, 5, 7}
                                                            : std::vector<real>{1, 2, 5};
@@ -183,9 +183,11 @@ private:
                 data +=
                     fmt::format("{:.9g} {:.9g}{}\n", c.x[i], c.y[i], c.half_widths.empty() ? "" : fmt::format(" {:.9g}", c.half_widths[i]));
             data += "EOD\n";
-            plots += fmt::format("{}{} using 1:2 {}", plots.empty() ? "plot " : ", \\\n     ", block, entries_[k].style.with());
-            if (!c.half_widths.empty())
-                plots += fmt::format(", \\\n     {} using 1:2:3 with yerrorbars lw 1.2 pt 0 lc rgb '{}'", block, entries_[k].style.colour);
+            const char* next = ", \\\n     ";
+            if (!c.half_widths.empty())  // below the curve: gnuplot clears a box around each of their points
+                plots += fmt::format("{}{} using 1:2:3 with yerrorbars lw 1.2 pt 0 lc rgb '{}'", plots.empty() ? "plot " : next, block,
+                                     entries_[k].style.colour);
+            plots += fmt::format("{}{} using 1:2 {}", plots.empty() ? "plot " : next, block, entries_[k].style.with());
         }
         return data + plots;
     }

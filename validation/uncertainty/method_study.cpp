@@ -12,7 +12,7 @@
 namespace weir::validation {
 namespace {
 
-constexpr double margin = 1.35;    // over a power law of two grids: measured on 19 scenes it foretold .75 to 1.04 of the true time
+constexpr double margin = 1.35;    // over a power law of two grids: measured on 19 scenes the estimate is 0.75 to 1.04 of the true time
 constexpr real rung_ratio = 1.45;  // of the cells of neighbouring grids
 constexpr real least_ratio = 1.2, most_ratio = 1.7;
 constexpr int most_grids = 12, fewest_grids = 3;
@@ -25,7 +25,7 @@ double by_power(int n, const GridRun& coarse, const GridRun& fine, double y0, do
     return y1 * std::pow(static_cast<double>(n) / fine.grid.number, power);
 }
 
-/// Adds grids to a ladder and foretells their price from the finest two.
+/// Adds grids to a ladder and estimates their cost from the finest two.
 class Climber {
 public:
     Climber(const Ladder& ladder, MethodStudy& study, const Limits& limits, std::vector<scene::Override> more, RunStore& store,
@@ -44,6 +44,12 @@ public:
         const auto& [coarse, fine] = last_two();
         const double d = static_cast<double>(fine.grid.cells.size());
         return margin * by_power(number, coarse, fine, coarse.run.seconds, fine.run.seconds, 0.5, d + 1.5);
+    }
+    /// Of a far finer grid: cells times steps at least, since small grids have a cost per step that does not grow.
+    double seconds_far(int number) const {
+        const auto& [coarse, fine] = last_two();
+        const double d = static_cast<double>(fine.grid.cells.size());
+        return by_power(number, coarse, fine, coarse.run.seconds, fine.run.seconds, d + 1, d + 1.5);
     }
     double seconds_per_frame(int number) const {
         const auto& [coarse, fine] = last_two();
@@ -84,7 +90,7 @@ int number_for(const MethodStudy& study, const std::vector<Wish>& wishes) {
         if (!quantity.band || !(quantity.width > 0)) return 0;
         const real wish = absolute(wishes[q], quantity.finest());
         const real finer = std::pow(quantity.width / wish, 1 / quantity.band->order);
-        number = std::max(number, static_cast<int>(std::ceil(std::min<real>(finer, 100) * study.grids.back().grid.number)));
+        number = std::max(number, static_cast<int>(std::ceil(std::min<real>(finer, farthest) * study.grids.back().grid.number)));
     }
     return number;
 }
@@ -109,7 +115,7 @@ std::vector<int> rest_of_ladder(const MethodStudy& study, const Climber& climber
 /// After five grids, a grid that would take hundred times the limit is not worth climbing towards.
 bool out_of_reach(const MethodStudy& study, const Climber& climber, const std::vector<Wish>& wishes, const Limits& limits) {
     const int wanted = number_for(study, wishes);
-    return study.grids.size() >= 5 && wanted > 0 && climber.seconds(wanted) > 100 * limits.time_limit;
+    return study.grids.size() >= 5 && wanted > 0 && climber.seconds_far(wanted) > 100 * limits.time_limit;
 }
 
 /// From coarse to fine. The first two grids price the others; with a wish the ladder ends where it is met.
@@ -125,10 +131,10 @@ void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std
         const auto rest = rest_of_ladder(study, climber, own, to_own);
         if (rest.empty()) break;
         if (first) {
-            study.foretold = study.spent;
-            for (const int number : rest) study.foretold += climber.seconds(number);
+            study.estimated = study.spent;
+            for (const int number : rest) study.estimated += climber.seconds(number);
             tell(fmt::format("{}: at most {} grids, {} to {} cells, {} of computing", study.method.name, 2 + rest.size(),
-                             study.grids.front().grid.text(), ladder.grid(rest.back()).text(), seconds_text(study.foretold)));
+                             study.grids.front().grid.text(), ladder.grid(rest.back()).text(), seconds_text(study.estimated)));
         }
         climber.add(rest.front());
         assess(study, asked);
@@ -137,8 +143,12 @@ void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std
         if (refuse_after_chaos(study)) break;
         if (!wishes.empty() && (met(study, wishes) || out_of_reach(study, climber, wishes, limits))) break;
     }
+}
+
+/// The grid that would meet the wishes, and its computing time.
+void estimate_next(MethodStudy& study, const Climber& climber, const std::vector<Wish>& wishes) {
     study.next = wishes.empty() || met(study, wishes) ? 0 : number_for(study, wishes);
-    if (study.next > 0) study.next_seconds = climber.seconds(study.next);
+    if (study.next > 0) study.next_seconds = climber.seconds_far(study.next);
 }
 
 }  // namespace
@@ -179,17 +189,23 @@ MethodStudy study_method(const scene::Scene& scene, const Method& method, const 
     const std::vector<scene::Override> pictures = picture_probes(asked, scene);
     Climber climber(ladder, study, limits, pictures, store, tell);
     climb(study, climber, ladder, asked, wishes, limits, store, tell);
-    for (const GridRun& g : study.grids)
-        if (g.run.failure) return study;
+    const auto fails = [](const GridRun& g) { return g.run.failure.has_value(); };
+    if (std::any_of(study.grids.begin(), study.grids.end(), fails)) return study;
     if (limits.checks) {
         study_chaos(study, ladder, pictures, store, tell);
         assess(study, asked);
         refuse_after_chaos(study);
     }
+    estimate_next(study, climber, wishes);
     return study;
 }
 
-std::string seconds_text(double seconds) { return seconds < 10 ? fmt::format("{:.2g} s", seconds) : fmt::format("{:.0f} s", seconds); }
+std::string seconds_text(double seconds) {
+    return seconds < 10     ? fmt::format("{:.2g} s", seconds)
+           : seconds < 120  ? fmt::format("{:.0f} s", seconds)
+           : seconds < 7200 ? fmt::format("{:.0f} min", seconds / 60)
+                            : fmt::format("{:.0f} h", seconds / 3600);
+}
 
 std::string text_with_unit(real value, const std::string& unit, real to) {
     struct Prefix {

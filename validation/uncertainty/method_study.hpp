@@ -50,10 +50,10 @@ struct MethodStudy {
     std::string left_out{};               // coarser grids, and why
     std::optional<real> chaotic_after{};  // [s]
     std::string twin{};                   // what the twin run changed
-    double foretold = 0;                  // computing seconds of the ladder, from its two coarsest grids
+    double estimated = 0;                 // computing seconds of the ladder, from its two coarsest grids
     double spent = 0;                     // of all grids of the ladder
     int next = 0;                         // number of the next finer grid
-    double next_seconds = 0;              // computing time of that grid, foretold
+    double next_seconds = 0;              // computing time of that grid, estimated
 
     double seconds_per_frame(std::size_t grid, double frame) const { return grids[grid].run.seconds_per_frame(frame); }
 };
@@ -67,13 +67,16 @@ MethodStudy study_method(const scene::Scene& scene, const Method& method, const 
 /// Width, bounds and refusals of the quantities for the grids that were run.
 void assess(MethodStudy& study, const std::vector<Asked>& asked);
 
+/// Grids that would be finer than this many times the finest one are not estimated.
+inline constexpr real farthest = 100;
+
 /// Bands wider than this part of the scale are refused.
 inline constexpr real widest_band = 0.2;
 
 /// "1.7 mm": the value in a unit of a suitable size, with as many digits as `to` has significance (two digits of it).
 std::string text_with_unit(real value, const std::string& unit, real to);
 
-/// "0.33 s", "52 s".
+/// "0.33 s", "52 s", "12 min", "3 h".
 std::string seconds_text(double seconds);
 
 }  // namespace weir::validation

@@ -14,6 +14,9 @@ namespace {
 
 using nlohmann::json;
 
+/// One number of a quantity: of several samples their root mean square.
+real plotted(const Value& value) { return value.samples.size() == 1 ? value.samples[0] : size_of(value.samples); }
+
 json quantity_json(const QuantityStudy& quantity) {
     json j{{"quantity", quantity.asked.quantity.text},
            {"unit", quantity.values.empty() ? "" : quantity.values.back().unit},
@@ -37,7 +40,7 @@ json method_json(const PlannedMethod& planned, const ScenePlan& plan) {
            {"fails", study.solver_fails},
            {"left_out", study.left_out},
            {"seconds", study.spent},
-           {"seconds_foretold", study.foretold},
+           {"seconds_estimated", study.estimated},
            {"other_equations", planned.other_equations()}};
     j["chaotic_after"] = study.chaotic_after ? json(*study.chaotic_after) : json();
     j["grids"] = json::array(), j["quantities"] = json::array();
@@ -53,11 +56,9 @@ json method_json(const PlannedMethod& planned, const ScenePlan& plan) {
         row["failure"] = run.run.failure ? json(*run.run.failure) : json();
         for (const QuantityStudy& q : study.quantities) {
             const bool known = q.values[g].unknown.empty();
-            row["values"].push_back(
-                {{"value",
-                  known ? json_number(q.values[g].samples.size() == 1 ? q.values[g].samples[0] : size_of(q.values[g].samples)) : json()},
-                 {"error_at_most", g < q.error.size() ? json_number(q.error[g]) : json()},
-                 {"unknown", q.values[g].unknown}});
+            row["values"].push_back({{"value", known ? json_number(plotted(q.values[g])) : json()},
+                                     {"error_at_most", g < q.error.size() ? json_number(q.error[g]) : json()},
+                                     {"unknown", q.values[g].unknown}});
         }
         j["grids"].push_back(row);
     }
@@ -83,17 +84,18 @@ Panel values_panel(const ScenePlan& plan, std::size_t q) {
             const Value& value = study.quantities[q].values[g];
             if (!value.unknown.empty() || g >= study.quantities[q].error.size()) continue;
             curve.x.push_back(1e3 * study.seconds_per_frame(g, plan.limits.frame));
-            curve.y.push_back(value.samples.size() == 1 ? value.samples[0] : size_of(value.samples));
+            curve.y.push_back(plotted(value));
             curve.half_widths.push_back(study.quantities[q].error[g]);
             panel.y = {axis_title(plan.asked[q].quantity.text, value.unit)};
         }
         if (!curve.x.empty()) panel.curves.push_back(std::move(curve));
     }
     if (plan.limits.budget < infinity) panel.marks.push_back({1e3 * plan.limits.budget, "budget"});
+    if (plan.take) panel.marks.push_back({1e3 * plan.take->seconds, "recommended"});
     return panel;
 }
 
-/// The finest series of each method, with the band of the quantity's own method dashed.
+/// The finest series of each method.
 std::optional<Panel> series_panel(const ScenePlan& plan, std::size_t q) {
     const Asked& asked = plan.asked[q];
     if (asked.is_metric || asked.quantity.kind == Statistic::picture) return std::nullopt;
@@ -105,9 +107,7 @@ std::optional<Panel> series_panel(const ScenePlan& plan, std::size_t q) {
         panel.curves.back().label = m.study.method.name;
         panel.y = {axis_title(asked.quantity.series, series.unit)};
     }
-    for (const Asked& one : plan.asked)
-        if (const auto& own = plan.methods.front().study; one.quantity.text == asked.quantity.text && own.chaotic_after)
-            panel.marks.push_back({*own.chaotic_after, "chaotic"});
+    if (const auto& own = plan.methods.front().study; own.chaotic_after) panel.marks.push_back({*own.chaotic_after, "chaotic"});
     if (panel.curves.empty()) return std::nullopt;
     return panel;
 }
@@ -120,7 +120,8 @@ std::string plan_json(const ScenePlan& plan) {
            {"budget", json_number(plan.limits.budget)},
            {"machine", output::this_machine().processor},
            {"commit", output::this_machine().commit},
-           {"cores_of_others", plan.others}};
+           {"cores_of_others", plan.others},
+           {"seconds_of_new_runs", plan.spent}};
     j["asked"] = json::array(), j["methods"] = json::array();
     for (std::size_t q = 0; q < plan.asked.size(); ++q)
         j["asked"].push_back({{"quantity", plan.asked[q].quantity.text}, {"error", plan.wishes.empty() ? "" : plan.wishes[q].text}});

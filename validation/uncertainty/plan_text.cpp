@@ -43,8 +43,8 @@ std::string price_text(const MethodStudy& study) {
     if (study.grids.empty()) return "";
     std::string s = fmt::format("{}: {} grids, {} to {} cells, {} of computing", study.method.name, study.grids.size(),
                                 study.grids.front().grid.text(), study.grids.back().grid.text(), seconds_text(study.spent));
-    if (study.foretold > 0)
-        s += fmt::format(" (foretold: at most {}; {:.2g} times the finest run)", seconds_text(study.foretold),
+    if (study.estimated > 0)
+        s += fmt::format(" (estimated: at most {}; {:.2g} times the finest run)", seconds_text(study.estimated),
                          study.spent / std::max(study.grids.back().run.seconds, 1e-9));
     s += "\n";
     if (!study.left_out.empty()) s += "  left out: " + study.left_out + "\n";
@@ -129,6 +129,10 @@ std::string finer_text(const ScenePlan& plan) {
         const MethodStudy& study = m.study;
         if (m.other_equations() || study.next <= study.grids.back().grid.number || study.quantities.empty()) continue;
         const double finer = static_cast<double>(study.next) / study.grids.back().grid.number;
+        if (finer >= farthest) {
+            s += fmt::format("{} would need more than {:g} times as many cells per axis\n", study.method.name, farthest);
+            continue;
+        }
         std::vector<std::string> cells;
         for (const int n : study.grids.back().grid.cells) cells.push_back(n > 1 ? fmt::format("{:.0f}", n * finer) : "1");
         s += study.next_seconds > 100 * plan.limits.time_limit

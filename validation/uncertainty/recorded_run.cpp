@@ -111,6 +111,18 @@ RecordedRun record_run(const scene::Scene& scene, const std::vector<std::string>
     return run;
 }
 
+std::vector<RecordedSeries> series_at_start(const scene::Scene& scene, const Solvers& solvers) {
+    const Simulation simulation(scene, solvers);
+    std::vector<RecordedSeries> all;
+    for (const ProbeSeries& probe : simulation.probes())
+        for (const std::string& column : probe.columns) {
+            const auto [name, unit] = name_and_unit(column);
+            all.push_back({.name = probe.name + "." + name, .unit = unit});
+        }
+    for (const Integral& i : simulation.integrals()) all.push_back({i.name, i.unit, true, {}});
+    return all;
+}
+
 const RecordedSeries& series_named(const std::vector<RecordedSeries>& series, std::string_view name) {
     std::vector<const RecordedSeries*> columns;
     std::vector<std::string> known;

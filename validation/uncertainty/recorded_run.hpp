@@ -39,6 +39,9 @@ struct RecordedRun {
 /// The scene to its end on one thread. What goes wrong stands in `failure`; `metrics` are registered metrics that require no reference.
 RecordedRun record_run(const scene::Scene& scene, const std::vector<std::string>& metrics, double time_limit, const Solvers& solvers);
 
+/// The series that a run of this scene records, without values. Throws BadInput where the scene cannot start.
+std::vector<RecordedSeries> series_at_start(const scene::Scene& scene, const Solvers& solvers);
+
 /// The series of that name; "right" names the only column of a probe. Throws BadInput naming the available series.
 const RecordedSeries& series_named(const std::vector<RecordedSeries>& series, std::string_view name);
 

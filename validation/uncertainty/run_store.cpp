@@ -6,10 +6,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <utility>
+
+#include <dlfcn.h>
 
 namespace weir::validation {
 namespace {
@@ -21,14 +25,32 @@ std::uint64_t hash(const std::string& text) {
     return value;
 }
 
+/// When the program was built: the executable, or the module of Python that holds this function.
+std::int64_t time_of_program() {
+    Dl_info info{};
+    const bool module = dladdr(reinterpret_cast<const void*>(&time_of_program), &info) != 0 && info.dli_fname &&
+                        std::string_view(info.dli_fname).find(".so") != std::string_view::npos;
+    std::error_code none;
+    return std::filesystem::last_write_time(module ? info.dli_fname : "/proc/self/exe", none).time_since_epoch().count();
+}
+
 /// What a run depends on: the program and the whole scene, not how it is written. Output changes no result.
 std::string key_of(const scene::Scene& scene) {
     scene::Table root = scene.root();
     root.erase("output"), root.erase("title");
     const output::Machine machine = output::this_machine();
-    std::error_code none;
-    const auto written = std::filesystem::last_write_time("/proc/self/exe", none).time_since_epoch().count();
-    return fmt::format("{} {} {} {}\n{}", machine.version, machine.commit, machine.rounding, written, scene::to_toml(root));
+    return fmt::format("{} {} {} {}\n{}", machine.version, machine.commit, machine.rounding, time_of_program(), scene::to_toml(root));
+}
+
+/// A kept run: a line with the checksum of its scene and of its text, then the text.
+std::string checksum_line(const std::string& key, const std::string& text) { return fmt::format("{:016x}\n", hash(key + text)); }
+
+/// The run in this file. Throws BadInput where it is damaged, or of another scene.
+RecordedRun kept_run(std::istream& file, const std::string& key) {
+    const std::string all{std::istreambuf_iterator<char>(file), {}};
+    const std::string text = all.substr(std::min(all.size(), all.find('\n') + 1));
+    if (all != checksum_line(key, text) + text) throw BadInput("a kept run is damaged");
+    return run_from_json(text);
 }
 
 bool has_metrics(const RecordedRun& run, const std::vector<std::string>& metrics) {
@@ -42,7 +64,7 @@ bool has_metrics(const RecordedRun& run, const std::vector<std::string>& metrics
 RunStore::RunStore(std::filesystem::path folder, std::vector<std::string> metrics, double time_limit, const Solvers& solvers)
     : folder_(std::move(folder)), metrics_(std::move(metrics)), time_limit_(time_limit), solvers_(&solvers) {}
 
-std::filesystem::path RunStore::file_of(const std::string& key) const { return folder_ / fmt::format("{:016x}.json", hash(key)); }
+std::filesystem::path RunStore::file_of(const std::string& key) const { return folder_ / fmt::format("{:016x}.run", hash(key)); }
 
 bool RunStore::has(const scene::Scene& scene) const {
     const std::string key = key_of(scene);
@@ -53,14 +75,16 @@ const RecordedRun& RunStore::run(const scene::Scene& scene) {
     const std::string key = key_of(scene);
     if (const auto known = runs_.find(key); known != runs_.end()) return known->second;
     if (std::ifstream file(folder_ / file_of(key).filename()); !folder_.empty() && file) try {
-            RecordedRun kept = run_from_json({std::istreambuf_iterator<char>(file), {}});
+            RecordedRun kept = kept_run(file, key);
             if (has_metrics(kept, metrics_)) return runs_[key] = std::move(kept);
         } catch (const BadInput&) {  // damaged, or of another version: made again
         }
     RecordedRun& made = runs_[key] = record_run(scene, metrics_, time_limit_, *solvers_);
     seconds_ += made.seconds;
     const bool out_of_time = made.failure && made.seconds > time_limit_;
-    if (!folder_.empty() && !out_of_time) output::write_file(file_of(key), to_json(made));
+    if (folder_.empty() || out_of_time) return made;
+    const std::string text = to_json(made);
+    output::write_file(file_of(key), checksum_line(key, text) + text);
     return made;
 }
 

@@ -3,7 +3,6 @@
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/folder_lock.hpp"
-#include "sim/simulation.hpp"
 #include "validation/cost/load.hpp"
 #include "validation/cost/plan.hpp"
 #include "validation/cost/recommend.hpp"
@@ -81,20 +80,28 @@ std::optional<Apart> compare(const MethodStudy& own, const MethodStudy& other, c
     return most;
 }
 
-/// The series and statistics that a scene has, for one who has not said which.
-[[noreturn]] void ask_for_quantity(const scene::Scene& scene, const Solvers& solvers) {
+/// The series of the scene, read on its coarsest grid, where a simulation takes little memory.
+std::vector<RecordedSeries> series_of(const scene::Scene& scene, const Method& method, const Solvers& solvers) {
+    const Ladder ladder(scene, method, solvers);
+    std::string left_out;
+    return series_at_start(ladder.scene(ladder.grid(ladder.coarsest(left_out))), solvers);
+}
+
+/// Throws BadInput before a run where a quantity is missing, or its series is none of the scene's.
+void check_asked(const std::vector<Asked>& asked, const scene::Scene& scene, const std::vector<RecordedSeries>& series) {
+    for (const Asked& a : asked)
+        if (!a.is_metric && a.quantity.kind != Statistic::picture) series_named(series, a.quantity.series);
+    if (!asked.empty()) return;
     std::vector<std::string> names;
-    const Simulation simulation(scene, solvers);
-    for (const ProbeSeries& probe : simulation.probes()) {
-        const std::string& first = probe.columns.at(0);
-        const std::string column = first.substr(0, first.find(" ["));
-        names.push_back(probe.columns.size() == 1 ? probe.name : probe.name + "." + column);
+    std::string example = "kinetic_energy";  // of a scene without probes
+    for (const RecordedSeries& s : series) {
+        if (!s.integral && names.empty()) example = s.name;
+        if (s.name.find('#') == std::string::npos || s.name.ends_with("#0")) names.push_back(s.name);
     }
-    for (const Integral& i : simulation.integrals()) names.push_back(i.name);
     throw BadInput(
         fmt::format("{}: weir plan requires --of, a quantity of this scene, and --error (5%) or --budget (4ms), or both; its probes and "
                     "integrals: {}; such as --of {}.max",
-                    scene.file(), fmt::join(names, ", "), names.empty() ? "kinetic_energy" : names.front()));
+                    scene.file(), fmt::join(names, ", "), example));
 }
 
 /// Methods that have become chaotic before the end of the asked times are not compared: their series differ for that reason.
@@ -106,12 +113,13 @@ ScenePlan plan_scene(const ScenePlanOptions& options, const Solvers& solvers, co
     ScenePlan plan{.file = scene_named(options.scene), .set = options.set};
     plan.name = name_of(plan.file);
     const scene::Scene scene = scene::read(plan.file, scene::schemas_of(solvers), options.set);
-    if (options.of.empty()) ask_for_quantity(scene, solvers);
-    plan.asked = parse_asked(options.of), plan.wishes = wishes_of(options, plan.asked.size());
+    const std::vector<Method> methods = methods_of(scene, options.with, solvers);
+    if (!options.of.empty()) plan.asked = parse_asked(options.of);
+    check_asked(plan.asked, scene, series_of(scene, methods.front(), solvers));
+    plan.wishes = wishes_of(options, plan.asked.size());
     if (!options.budget.empty()) plan.limits.budget = parse_seconds(options.budget);
     if (!options.frame.empty()) plan.limits.frame = parse_seconds(options.frame);
     if (!options.time_limit.empty()) plan.limits.time_limit = parse_seconds(options.time_limit);
-    const std::vector<Method> methods = methods_of(scene, options.with, solvers);
     std::vector<std::string> metrics;
     for (const Asked& a : plan.asked)
         if (a.is_metric) metrics.push_back(a.quantity.text);
@@ -199,6 +207,12 @@ std::string_view left_out_by(std::string_view solver) {
     return {};
 }
 
+void keep_results(const ScenePlan& plan) {
+    if (plan.folder.empty()) return;
+    output::write_file(plan.folder / "plan.json", plan_json(plan));
+    draw_plan(plan, plan.folder / "plan.svg");
+}
+
 int scene_plan_command(const ScenePlanOptions& options, const Solvers& solvers) {
     const bool talk = !options.quiet && isatty(STDERR_FILENO);
     const ScenePlan plan = plan_scene(options, solvers, [&](const std::string& what) {
@@ -206,11 +220,8 @@ int scene_plan_command(const ScenePlanOptions& options, const Solvers& solvers) 
     });
     if (talk) std::fprintf(stderr, "\r\033[K");
     std::fputs(plan_text(plan).c_str(), stdout);
-    if (!plan.folder.empty()) {
-        output::write_file(plan.folder / "plan.json", plan_json(plan));
-        draw_plan(plan, plan.folder / "plan.svg");
-        fmt::print("figure: {}\n", (plan.folder / "plan.svg").string());
-    }
+    keep_results(plan);
+    if (!plan.folder.empty()) fmt::print("figure: {}\n", (plan.folder / "plan.svg").string());
     return plan.take ? exit_success : exit_claim_failed;
 }
 

@@ -70,8 +70,11 @@ std::string_view left_out_by(std::string_view solver);
 
 std::string plan_text(const ScenePlan& plan);
 std::string plan_json(const ScenePlan& plan);
-/// Value with its band against computing time per frame; for series, the finest results with their bands.
+/// Value with its band against computing time per frame; for series, the finest results.
 void draw_plan(const ScenePlan& plan, const std::filesystem::path& svg);
+
+/// Writes plan.json and plan.svg into the plan's folder, where it has one.
+void keep_results(const ScenePlan& plan);
 
 /// Plans, prints, and keeps plan.json, plan.svg and the runs beside the results of the scene. Returns the exit code: 1 where nothing meets
 /// the wishes.

@@ -148,7 +148,7 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
     mark_front(result.points, result.study);
     const auto sentences = advice(result);
     ASSERT_EQ(sentences.size(), 5u);
-    EXPECT_EQ(sentences[0], "For e <= 0.2 take fine: 33.3 ms of each 16.7 ms frame (0.5 times real time).");
+    EXPECT_EQ(sentences[0], "For e <= 0.2 take fine: 33.3 ms per frame of 16.7 ms (0.5 times real time).");
     EXPECT_EQ(sentences[1],
               "Interpolated along each method's curve at e = 0.2, in units of the time of fine (at most that of its cheapest "
               "configuration): other at most 4. "
@@ -160,7 +160,7 @@ TEST("the sentences name the cheapest setting that is good enough, the best in r
     EXPECT_EQ(sentences[4], "1 of 4 configurations failed: see the table.");
     result.study.good_enough = 0.01;
     EXPECT_EQ(advice(result)[0],
-              "No configuration reaches e = 0.01; the nearest is fine with 0.1, for 33.3 ms of each 16.7 ms frame (0.5 times real time).");
+              "No configuration reaches e = 0.01; the nearest is fine with 0.1, for 33.3 ms per frame of 16.7 ms (0.5 times real time).");
 }
 
 TEST("where most methods gain nothing from a more expensive setting the third sentence says so") {
