@@ -29,8 +29,9 @@ std::vector<real> times_of_curve(const Curve& series, const Window& window) {
     return times;
 }
 
-/// The root mean square over its range, or over its size where it does not vary.
-void set_scale(Value& value, const NamedQuantity& quantity, const RecordedSeries& series) {
+/// What a percentage refers to: the range of the series, or its size where it does not vary or cannot be negative. A series at the level of
+/// round-off is measured by the largest one of its unit.
+void set_scale(Value& value, const NamedQuantity& quantity, const RecordedSeries& series, const RecordedRun& run) {
     if (quantity.is_time() || quantity.kind == Statistic::drift || quantity.kind == Statistic::change) {
         value.scale = std::abs(value.samples.at(0)), value.scale_of = "its value";
         return;
@@ -42,6 +43,8 @@ void set_scale(Value& value, const NamedQuantity& quantity, const RecordedSeries
     const bool positive = series.integral && *least >= 0;
     value.scale = positive || range < 1e-9 * largest ? largest : range;
     value.scale_of = positive || range < 1e-9 * largest ? "its largest value" : "its range";
+    if (const real of_unit = largest_of_unit(run, series.unit); value.scale < round_off * of_unit)
+        value.scale = of_unit, value.scale_of = "the largest value in " + series.unit + ", since it is round-off";
 }
 
 Value picture_of(const RecordedRun& run, const Asked& asked, std::size_t number) {
@@ -62,6 +65,14 @@ Value picture_of(const RecordedRun& run, const Asked& asked, std::size_t number)
 }
 
 }  // namespace
+
+real largest_of_unit(const RecordedRun& run, const std::string& unit) {
+    real largest = 0;
+    for (const RecordedSeries& s : run.series)
+        for (const real y : s.curve.y)
+            if (s.unit == unit && std::isfinite(y)) largest = std::max(largest, std::abs(y));
+    return largest;
+}
 
 Wish parse_wish(const std::string& text) {
     Wish wish{.text = text};
@@ -148,7 +159,7 @@ Value value_of(const RecordedRun& run, const Asked& asked, std::size_t number) {
     const bool known =
         !value.samples.empty() && std::all_of(value.samples.begin(), value.samples.end(), [](real v) { return std::isfinite(v); });
     if (known)
-        set_scale(value, quantity, series);
+        set_scale(value, quantity, series, run);
     else if (within(series.curve, quantity.when).y.empty())
         value.unknown = "the run does not cover the asked times";
     else

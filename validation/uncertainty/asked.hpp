@@ -42,6 +42,10 @@ Value value_of(const RecordedRun& run, const Asked& asked, std::size_t number);
 /// The series behind a quantity within its window at 100 times, for comparing whole series; empty for metrics and pictures.
 std::vector<real> whole_series(const RecordedRun& run, const Asked& asked);
 
+/// The largest magnitude of all series of this unit in a run. Below round_off times that, a series is round-off.
+real largest_of_unit(const RecordedRun& run, const std::string& unit);
+inline constexpr real round_off = 1e-9;
+
 /// The wish in the unit of the quantity. Throws BadInput where the units do not fit.
 real absolute(const Wish& wish, const Value& value);
 

@@ -90,7 +90,9 @@ void run_twin(MethodStudy& study, const Ladder& ladder, const std::vector<scene:
     for (const QuantityStudy& quantity : study.quantities) {
         if (quantity.asked.is_metric || quantity.asked.quantity.kind == Statistic::picture) continue;
         const auto& name = quantity.asked.quantity.series;
-        const auto time = time_of_parting(series_named(second.run.series, name).curve, series_named(twin->series, name).curve);
+        const RecordedSeries& series = series_named(second.run.series, name);
+        const real least = round_off * largest_of_unit(second.run, series.unit);
+        const auto time = time_of_parting(series.curve, series_named(twin->series, name).curve, least);
         if (time && (!study.chaotic_after || *time < *study.chaotic_after)) study.chaotic_after = time;
     }
 }
@@ -155,11 +157,12 @@ real band_of_mean(const QuantityStudy& quantity, const MethodStudy& study) {
 
 }  // namespace
 
-std::optional<real> time_of_parting(const Curve& one, const Curve& twin) {
+std::optional<real> time_of_parting(const Curve& one, const Curve& twin, real least) {
     if (one.x.size() < 2 || twin.x.size() < 2) return std::nullopt;
     const real first = one.x.front(), last = std::min(one.x.back(), twin.x.back());
-    const auto [least, most] = std::minmax_element(one.y.begin(), one.y.end());
-    const real limit = parted * (*most - *least);
+    const auto [low, high] = std::minmax_element(one.y.begin(), one.y.end());
+    const real range = *high - *low, limit = parted * range;
+    if (!(range > least)) return std::nullopt;
     const NamedQuantity mean{.kind = Statistic::mean};
     for (int i = 0; i < averages && limit > 0; ++i) {
         NamedQuantity window = mean;

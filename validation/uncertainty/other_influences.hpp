@@ -18,7 +18,8 @@ void study_chaos(MethodStudy& study, const Ladder& ladder, const std::vector<sce
 /// their six parts. Returns whether a value was refused.
 bool refuse_after_chaos(MethodStudy& study);
 
-/// First time at which the two series, averaged over 1/30 of their length, differ by 5% of the range of the first; no value: never.
-std::optional<real> time_of_parting(const Curve& one, const Curve& twin);
+/// First time at which the two series, averaged over 1/30 of their length, differ by 5% of the range of the first; no value: never, or the
+/// range is below `least`.
+std::optional<real> time_of_parting(const Curve& one, const Curve& twin, real least = 0);
 
 }  // namespace weir::validation

@@ -101,8 +101,9 @@ RecordedRun record_run(const scene::Scene& scene, const std::vector<std::string>
         const RunRecord& record = watch.record();
         run.series = series_of(record);
         for (const auto& name : metrics) run.measured[name] = measure(name, record, {});
-        run.warnings = simulation.warnings();
-        for (const auto& warning : balance.of_run(simulation).warnings) run.warnings.push_back(warning);
+        run.warnings = balance.of_run(simulation).warnings;
+        run.balanced = run.warnings.empty();
+        for (const auto& warning : simulation.warnings()) run.warnings.push_back(warning);
     } catch (const NumericalFailure& failure) {
         run.failure = failure.what();
     } catch (const BadInput& wrong) {
@@ -150,6 +151,7 @@ std::string to_json(const RecordedRun& run) {
              {"mean_dt", run.mean_dt},
              {"end", run.end},
              {"warnings", run.warnings},
+             {"balanced", run.balanced},
              {"measured", json::object()},
              {"series", json::array()}};
     all["failure"] = run.failure ? json(*run.failure) : json();
@@ -173,7 +175,8 @@ RecordedRun run_from_json(const std::string& text) {
                         .steps = all.at("steps"),
                         .mean_dt = all.at("mean_dt"),
                         .end = all.at("end"),
-                        .warnings = all.at("warnings").get<std::vector<std::string>>()};
+                        .warnings = all.at("warnings").get<std::vector<std::string>>(),
+                        .balanced = all.at("balanced")};
         if (!all.at("failure").is_null()) run.failure = all.at("failure").get<std::string>();
         for (const auto& [name, value] : all.at("measured").items()) run.measured[name] = number_of(value);
         for (const json& s : all.at("series")) {

@@ -30,7 +30,8 @@ struct RecordedRun {
     std::int64_t steps = 0;
     real mean_dt = 0, end = 0;             // [s]
     std::optional<std::string> failure{};  // why its numbers must not be used
-    std::vector<std::string> warnings{};   // of the run and of its balance
+    std::vector<std::string> warnings{};   // of the balance, then of the run
+    bool balanced = true;                  // the balance has no warning
 
     /// Computing time per frame [s] of `frame` simulated seconds; a frame takes at least one step.
     double seconds_per_frame(double frame) const;

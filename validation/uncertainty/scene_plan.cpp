@@ -168,7 +168,7 @@ std::optional<Recommended> recommended(const ScenePlan& plan) {
             finer_meet = plan.wishes.empty() ? error < infinity : error <= 1;
             if (!finer_meet) break;
             const Recommended choice{m, g, study.seconds_per_frame(g, plan.limits.frame)};
-            if (choice.seconds > plan.limits.budget) continue;
+            if (choice.seconds > plan.limits.budget || !study.grids[g].run.balanced) continue;
             const bool better = !best || (plan.wishes.empty() ? error < best_error : choice.seconds < best->seconds);
             if (better) best = choice, best_error = error;
         }

@@ -60,7 +60,7 @@ struct ScenePlan {
 ScenePlan plan_scene(const ScenePlanOptions& options, const Solvers& solvers, const Tell& tell);
 
 /// The cheapest grid of which every finer one meets all wishes too, within the budget; without wishes the most accurate within the budget.
-/// Methods that solve other equations than the scene's own are left out.
+/// Methods that solve other equations than the scene's own are left out, and grids whose balance warns.
 std::optional<Recommended> recommended(const ScenePlan& plan);
 
 /// The command that runs a grid of a method.

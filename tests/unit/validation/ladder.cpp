@@ -98,4 +98,5 @@ TEST("twins part where their means differ by a twentieth of the range") {
     ASSERT_TRUE(time_of_parting(one, twin).has_value());
     EXPECT_NEAR(*time_of_parting(one, twin), 2, 0.1 + 1e-9);  // a window is 0.1 s long
     EXPECT_FALSE(time_of_parting(one, one).has_value());
+    EXPECT_FALSE(time_of_parting(one, twin, 3).has_value()) << "below that, a series is round-off";
 }

@@ -80,6 +80,8 @@ TEST("methods of other equations and values that are refused are not recommended
     EXPECT_EQ(recommended(plan)->method, 1u);
     plan.methods[1].apart = Apart{.distance = 2, .bands = 1};
     EXPECT_EQ(recommended(plan)->method, 0u);
+    plan.methods[0].study.grids[1].run.balanced = false;
+    EXPECT_EQ(recommended(plan)->grid, 2u);
     plan.methods[0].study.quantities[0].refused = "chaotic";
     EXPECT_FALSE(recommended(plan).has_value());
 }
@@ -124,6 +126,14 @@ TEST("the mean of a chaotic flow gets the interval of its six parts") {
     EXPECT_NE(study.quantities[0].refused.find("take a longer window"), std::string::npos);
 }
 
+TEST("a series at the level of round-off is measured by the largest of its unit") {
+    MethodStudy study = study_of({1e-14, -3e-14, 2e-14});
+    for (GridRun& g : study.grids) g.run.series.push_back({"b.height", "m", false, {.label = "b", .x = {0, 1}, .y = {0, 2}}});
+    assess(study, parse_asked({"a.height"}));
+    EXPECT_EQ(study.quantities[0].finest().scale, 2);
+    EXPECT_EQ(study.quantities[0].refused, "");
+}
+
 TEST("wishes are parts of a scale or have a unit") {
     const Value height{.samples = {0.4}, .unit = "m", .scale = 0.1};
     EXPECT_NEAR(absolute(parse_wish("5%"), height), 0.005, 1e-15);
@@ -140,7 +150,7 @@ TEST("wishes are parts of a scale or have a unit") {
 TEST("a kept run is read back as it was") {
     RecordedRun run = study_of({1.5}).grids[0].run;
     run.series[0].curve.y[0] = std::nan("");
-    run.cells = {10, 1}, run.failure = "no", run.measured["x"] = 2.5, run.warnings = {"w"};
+    run.cells = {10, 1}, run.failure = "no", run.measured["x"] = 2.5, run.warnings = {"w"}, run.balanced = false;
     const RecordedRun back = run_from_json(to_json(run));
     EXPECT_EQ(to_json(back), to_json(run));
     EXPECT_TRUE(std::isnan(back.series[0].curve.y[0]));
