@@ -2,6 +2,7 @@
 #include "validation/cost/plan.hpp"
 #include "app/commands.hpp"
 #include "validation/cost/study.hpp"
+#include "validation/uncertainty/coverage_scenes.hpp"
 #include "validation/uncertainty/scene_plan.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ struct PlanArguments {
     validation::PlanOptions study;
     validation::ScenePlanOptions scene;
     std::vector<std::string> set;
+    bool coverage = false;
 };
 
 /// Returns whether a study of cost belongs to the word: a case by name or folder.
@@ -27,7 +29,16 @@ bool has_study(const std::string& word) {
     }
 }
 
+int print_coverage(const validation::ScenePlanOptions& options) {
+    const auto tell = [&](const std::string& line) {
+        if (!options.quiet) fmt::print(stderr, "{}\n", line);
+    };
+    fmt::print("{}", validation::coverage_text(validation::run_coverage_scenes(options.scene, sim::registry(), tell)));
+    return 0;
+}
+
 int plan(PlanArguments& arguments) {
+    if (arguments.coverage) return print_coverage(arguments.scene);
     const bool of_scene = !arguments.scene.of.empty() || !has_study(arguments.scene.scene);
     if (!of_scene) {
         if (arguments.scene.error.size() > 1) throw BadInput("--error: a study of cost has one error");
@@ -79,6 +90,9 @@ void add_plan(CLI::App& app, int& exit_code) {
     command->add_option("--tables", arguments->study.tables, "Folder of the tables (default: results/cost here, or as installed)");
     command->add_flag("--as-measured", arguments->study.as_measured,
                       "Use the published times unscaled, without measuring some of them again on this machine");
+    command->add_flag("--coverage", arguments->coverage,
+                      "The scene is a file of scenes with known results, such as cases/error_bars/data/scene.toml: print how often the "
+                      "uncertainties contain the true error");
     command->add_flag("--quiet", scene.quiet, "No progress on the terminal");
     command->callback([arguments, &exit_code] { exit_code = plan(*arguments); });
 }

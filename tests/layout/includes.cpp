@@ -68,14 +68,17 @@ struct Include {
 /// The levels: a folder sees those below its own. Peers never see each other.
 const std::map<std::string, int>& level() {
     static const std::map<std::string, int> table = {
-        {"solvers/core", 0},          {"solvers/parallel", 1},     {"solvers/scene", 1},         {"solvers/backend", 2},
-        {"solvers/geometry", 2},      {"solvers/thermo", 2},       {"solvers/poisson", 3},       {"solvers/particles", 4},
-        {"solvers/rigid", 3},         {"solvers/mac", 4},          {"solvers/free_surface", 5},  {"solvers/smoke", 6},
-        {"solvers/water", 6},         {"solvers/studies", 6},      {"solvers/tallcell", 6},      {"solvers/heightfield", 6},
-        {"solvers/waves", 6},         {"solvers/sph", 6},          {"solvers/pbf", 6},           {"solvers/sim", 8},
-        {"solvers/output", 7},        {"solvers/parallel/mpi", 8}, {"validation/references", 9}, {"validation/metrics", 9},
-        {"validation/harness", 10},   {"validation/page", 11},     {"validation/report", 12},    {"validation/cost", 13},
-        {"validation/stability", 13}, {"solvers/matter", 3},       {"solvers/surfaces", 5},      {"solvers/linear", 1},
+        {"solvers/core", 0},         {"solvers/parallel", 1},      {"solvers/scene", 1},
+        {"solvers/backend", 2},      {"solvers/geometry", 2},      {"solvers/thermo", 2},
+        {"solvers/poisson", 3},      {"solvers/particles", 4},     {"solvers/rigid", 3},
+        {"solvers/mac", 4},          {"solvers/free_surface", 5},  {"solvers/smoke", 6},
+        {"solvers/water", 6},        {"solvers/studies", 6},       {"solvers/tallcell", 6},
+        {"solvers/heightfield", 6},  {"solvers/waves", 6},         {"solvers/sph", 6},
+        {"solvers/pbf", 6},          {"solvers/sim", 8},           {"solvers/output", 7},
+        {"solvers/parallel/mpi", 8}, {"validation/references", 9}, {"validation/metrics", 9},
+        {"validation/harness", 10},  {"validation/page", 11},      {"validation/report", 12},
+        {"validation/cost", 13},     {"validation/stability", 13}, {"validation/uncertainty", 14},
+        {"solvers/matter", 3},       {"solvers/surfaces", 5},      {"solvers/linear", 1},
     };
     return table;
 }

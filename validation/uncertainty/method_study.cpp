@@ -33,9 +33,7 @@ public:
         : ladder_(&ladder), study_(&study), limits_(&limits), more_(std::move(more)), store_(&store), tell_(&tell) {}
 
     void add(int number) {
-        const bool first = study_->grids.empty();
-        const Grid grid =
-            first ? ladder_->grid(number) : ladder_->grid(number, study_->grids.front().run.mean_dt, study_->grids.front().grid.number);
+        const Grid grid = next_grid(*ladder_, study_->grids, number);
         (*tell_)(fmt::format("{}, {} cells", study_->method.name, grid.text()));
         study_->grids.push_back({grid, store_->run(ladder_->scene(grid, more_))});
         study_->spent += study_->grids.back().run.seconds;
@@ -152,6 +150,11 @@ void estimate_next(MethodStudy& study, const Climber& climber, const std::vector
 }
 
 }  // namespace
+
+Grid next_grid(const Ladder& ladder, const std::vector<GridRun>& runs, int number) {
+    if (runs.empty()) return ladder.grid(number);
+    return ladder.grid(number, runs.front().run.mean_dt, runs.front().grid.number);
+}
 
 void assess(MethodStudy& study, const std::vector<Asked>& asked) {
     study.quantities.resize(asked.size());

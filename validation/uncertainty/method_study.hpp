@@ -60,6 +60,9 @@ struct MethodStudy {
 
 using Tell = std::function<void(const std::string&)>;
 
+/// The grid of this number for a ladder of which `runs` exist: its steps shrink with its cells, from the mean step of the coarsest run.
+Grid next_grid(const Ladder& ladder, const std::vector<GridRun>& runs, int number);
+
 /// Runs the ladder of a method. `wishes`: one for each quantity, or none. Throws BadInput where a quantity is unknown.
 MethodStudy study_method(const scene::Scene& scene, const Method& method, const std::vector<Asked>& asked, const std::vector<Wish>& wishes,
                          const Limits& limits, RunStore& store, const Solvers& solvers, const Tell& tell);
