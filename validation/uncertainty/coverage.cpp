@@ -9,7 +9,7 @@
 namespace weir::validation {
 namespace {
 
-constexpr real round_off = 1e-12;  // of the size of a quantity
+constexpr real negligible = 1e-12;  // of the size of a quantity
 
 /// The coarsest of the first `count` grids whose bound, and that of all finer ones, is at most `wish`.
 std::optional<std::size_t> recommended(const KnownQuantity& q, std::size_t count, real wish) {
@@ -39,7 +39,7 @@ std::vector<CheckedBand> check_bands(const std::vector<KnownQuantity>& quantitie
         for (std::size_t finest = 2; finest < q.values.size(); ++finest) {
             const auto from = q.values.begin() + static_cast<std::ptrdiff_t>(finest - 2);
             CheckedBand c{.quantity = i, .finest = finest, .band = band({from, from + 3}, q.formal_order), .error = q.error(finest)};
-            c.covered = c.error <= c.band.width + round_off * std::max(size_of(q.truth), q.scales.at(finest));
+            c.covered = c.error <= c.band.width + negligible * std::max(size_of(q.truth), q.scales.at(finest));
             checked.push_back(c);
         }
     }
