@@ -54,7 +54,9 @@ Key accept() {
          positive("tolerance", "Absolute, for `equals`."),
          number("order_at_least", "Observed order at the finest grids."),
          pair("order_within", "low <= observed order <= high."),
-         positive("gci_at_most", "Grid convergence index of the finest grids, relative (0.01: one per cent)."),
+         positive("gci_at_most",
+                  "Uncertainty of the finest grid, relative (0.01: one per cent): the band of three grids, or with two the grid "
+                  "convergence index."),
          positive("formal_order", "Formal order assumed by gci_at_most on two grids."),
          flag("never_increases", "The series never rises over the run, beyond `slack`."),
          flag("never_decreases", "The series never falls over the run, beyond `slack`."),

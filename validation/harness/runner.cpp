@@ -171,6 +171,7 @@ RunResult run_and_measure(const Case& c, const Variant& variant, std::size_t i, 
         scene::Scene scene = scene_of(variant, i, scene::schemas_of(solvers));
         const Reference reference = make_reference(variant.reference, scene, c.folder);
         result.h = mesh_width(variant, i, scene);
+        result.formal_order = formal_order(scene.solver(), scene.has("scheme.advection") ? scene.text("scheme.advection") : "");
         RunOptions options{.frames = frames, .time_limit = variant.time_limit, .steps = c.cut};
         for (const std::string& name : metrics_of(variant))
             if (const Metric* m = find_metric(name); m && m->observe) options.observers.push_back(m);

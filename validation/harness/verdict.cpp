@@ -50,7 +50,19 @@ void judge_values(Verdict& v, const Criterion& c, const std::vector<const RunRes
     if (std::isnan(v.measured)) v.note = "not a number";
 }
 
-void judge_orders(Verdict& v, const Criterion& c, const std::vector<RunResult>& runs) {
+/// The band of three grids relative to the finest value. It holds for grids that are not asymptotic, too, and is wider then.
+void judge_band(Verdict& v, const Criterion& c, const Band& band, const std::vector<RunResult>& runs) {
+    v.measured = band.width / std::abs(measured_in(runs.back(), c));
+    v.pass = v.measured >= c.low && v.measured <= c.high;
+    v.at = runs.back().label;
+    if (std::isnan(v.measured))
+        v.note = "a value is not a number";
+    else if (band.convergence != Convergence::asymptotic)
+        v.note = words_of(band.convergence);
+}
+
+void judge_orders(Verdict& v, const Criterion& c, const Variant& plan, const std::vector<RunResult>& runs) {
+    if (const auto band = band_of(plan, runs, c.metric); band && c.test == Test::gci_at_most) return judge_band(v, c, *band, runs);
     const OrderTable table = order_table(runs, c.metric);
     const Extrapolation x = table.extrapolate(c.formal_order);
     v.measured = c.test == Test::gci_at_most ? x.gci_fine : table.order();
@@ -82,9 +94,11 @@ Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<Run
         return v;
     }
     if (c.is_order() || c.test == Test::gci_at_most)
-        judge_orders(v, c, runs);
+        judge_orders(v, c, plan, runs);
     else
         judge_values(v, c, chosen);
+    const bool of_finest = !c.is_order() && !c.is_monotone() && c.test != Test::gci_at_most && v.at == runs.back().label;
+    if (const auto band = of_finest ? band_of(plan, runs, c.metric) : std::nullopt) v.band = band->width;
     if (!c.not_reached.empty() && v.pass) v.note = "this open target is met: remove \"not_reached\"";
     return v;
 }
@@ -111,6 +125,17 @@ OrderTable order_table(const std::vector<RunResult>& runs, const std::string& me
         table.add(r.h, at == r.measured.end() ? std::nan("") : at->second);
     }
     return table;
+}
+
+std::optional<Band> band_of(const Variant& plan, const std::vector<RunResult>& runs, const std::string& metric) {
+    if (!plan.sweep || plan.sweep->key != "grid.cells" || runs.size() < 3 || quantity_of(metric) == Quantity::error) return std::nullopt;
+    std::vector<GridValue> grids;
+    for (const RunResult& r : runs) {
+        const auto at = r.measured.find(metric);
+        grids.push_back({r.h, {at == r.measured.end() ? std::nan("") : at->second}});
+    }
+    std::sort(grids.begin(), grids.end(), [](const GridValue& a, const GridValue& b) { return a.h > b.h; });
+    return band(grids, runs.back().formal_order);
 }
 
 real largest_rise(const Curve& series, bool falls) {

@@ -1,5 +1,6 @@
 // What came out of the runs of a case, and what that says about its claims.
 #pragma once
+#include "validation/harness/band.hpp"
 #include "validation/harness/case.hpp"
 #include "validation/harness/curve.hpp"
 #include "validation/harness/order_table.hpp"
@@ -19,6 +20,7 @@ struct RunResult {
     real h = 0;           // mesh width for a sweep over cells [m], else the sweep's value
     double seconds = 0;   // wall clock of all steps
     std::int64_t steps = 0;
+    real formal_order = 1;                       // of its solver (harness/band.hpp)
     std::optional<std::string> failure{};        // the run ended early, or a number could not be measured
     bool bad_input = false;                      // ... because the case asks for what is not there (exit code 2, not 1)
     std::map<std::string, real> measured{};      // by metric
@@ -34,6 +36,7 @@ struct Verdict {
     std::string criterion{};  // at_most, order_at_least, ...
     std::string at{};         // the sweep value it speaks of, where it speaks of one
     real measured = std::nan("");
+    real band = std::nan("");  // uncertainty of a value from the grids of its sweep; NaN where it has none
     real low = -infinity, high = infinity;
     bool pass = false;
     std::string why{};
@@ -67,6 +70,8 @@ struct CaseResult {
 std::vector<Verdict> judge(const Variant& plan, const std::vector<RunResult>& runs);
 /// Orders of one metric over the runs of a variant.
 OrderTable order_table(const std::vector<RunResult>& runs, const std::string& metric);
+/// The band of a value on the finest grid of a sweep over grids; no value for errors, other sweeps, and fewer than three grids.
+std::optional<Band> band_of(const Variant& plan, const std::vector<RunResult>& runs, const std::string& metric);
 /// Largest rise (or fall) of a series between neighbours, relative to its largest magnitude; NaN if it holds a NaN or nothing.
 real largest_rise(const Curve& series, bool falls = false);
 

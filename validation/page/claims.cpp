@@ -96,6 +96,13 @@ std::string links(const std::string& name, const std::filesystem::path& results)
     return s;
 }
 
+/// The measured value, with its band where the grids of a sweep give one.
+HtmlTable::Cell measured_cell(const json& v) {
+    HtmlTable::Cell cell = value(number_at(v, "measured"));
+    if (const auto band = number_at(v, "band")) cell.html += fmt::format(" ± {:.2g}", *band);
+    return cell;
+}
+
 std::string detail(const CaseClaims& c, const std::filesystem::path& results) {
     const json& first = *c.claims.front();
     const bool all = c.all_held();
@@ -113,7 +120,7 @@ std::string detail(const CaseClaims& c, const std::filesystem::path& results) {
         const double seconds = number_at(*v, "seconds").value_or(0);
         table.row({verdict_cell(*v),
                    word(text_at(*v, "claim")),
-                   value(number_at(*v, "measured")),
+                   measured_cell(*v),
                    raw("<span class=\"bound\">" + escaped(text_at(*v, "bound_text")) + "</span>"),
                    bar(used_part(*v)),
                    raw("<span class=\"why\">" + why + "</span>"),

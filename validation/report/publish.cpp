@@ -35,6 +35,13 @@ std::string number(const json& entry, const char* key, const char* form) {
     return at == entry.end() || !at->is_number() ? "not a number" : fmt::format(fmt::runtime(form), at->get<double>());
 }
 
+/// "2.648", with its band where the grids of a sweep give one: "2.648 ± 0.014".
+std::string measured_text(const json& v) {
+    const auto band = v.find("band");
+    const bool known = band != v.end() && band->is_number();
+    return number(v, "measured", "{:.4g}") + (known ? fmt::format(" ± {:.2g}", band->get<double>()) : "");
+}
+
 std::string row(const json& v) {
     const std::string name = text(v, "case");
     std::string why = text(v, "why");
@@ -45,8 +52,8 @@ std::string row(const json& v) {
                        is_open_target           ? "open"
                        : v.value("pass", false) ? "pass"
                                                 : "**FAIL**",
-                       cell(text(v, "claim")), number(v, "measured", "{:.4g}"), cell(text(v, "bound_text")), cell(why),
-                       number(v, "seconds", "{:.2f}"), name, cell(text(v, "frames")));
+                       cell(text(v, "claim")), measured_text(v), cell(text(v, "bound_text")), cell(why), number(v, "seconds", "{:.2f}"),
+                       name, cell(text(v, "frames")));
 }
 
 std::string section(const std::vector<const json*>& claims) {

@@ -87,6 +87,9 @@ std::string orders_table(const CaseResult& result) {
             if (v.runs.size() > 2)
                 s += fmt::format("    h = 0: {:.6g} (order {:.2f}), GCI {:.3g}, GCI ratio {:.3f}{}\n", x.limit, x.order, x.gci_fine,
                                  x.asymptotic, x.monotone ? "" : ", oscillating");
+            if (const auto band = band_of(v.plan, v.runs, metric))
+                s += fmt::format("    finest grid: {:.6g} +- {:.2g} ({})\n", table.rows().back().value, band->width,
+                                 words_of(band->convergence));
         }
     }
     return s;
@@ -94,11 +97,13 @@ std::string orders_table(const CaseResult& result) {
 
 std::string csv(const CaseResult& result) {
     std::string s = fmt::format("# {} at {} size. {}\n", result.plan.name, name(result.plan.size), result.source);
-    s += "variant,value,h,metric,measured,order,limit,gci,gci_ratio,seconds,steps\n";
+    s += "variant,value,h,metric,measured,order,limit,gci,gci_ratio,seconds,steps,band\n";
     for (const auto& v : result.variants)
         for (const RunResult& run : v.runs)
             for (const auto& [metric, measured] : run.measured) {
-                std::string order = ",,,";
+                std::string order = ",,,", band;
+                if (const auto width = &run == &v.runs.back() ? band_of(v.plan, v.runs, metric) : std::nullopt)
+                    band = fmt::format("{:.6g}", width->width);
                 if (ordered(v) && has_order(v, metric)) {
                     const OrderTable table = order_table(v.runs, metric);
                     const auto row = std::find_if(table.rows().begin(), table.rows().end(), [&](const auto& r) { return r.h == run.h; });
@@ -106,8 +111,8 @@ std::string csv(const CaseResult& result) {
                     const auto cell = [](real value) { return std::isnan(value) ? std::string() : fmt::format("{:.6g}", value); };
                     order = fmt::format("{},{},{},{}", cell(row->order), cell(x.limit), cell(x.gci_fine), cell(x.asymptotic));
                 }
-                s += fmt::format("{},{},{:.9g},{},{:.9g},{},{:.3f},{}\n", v.plan.name, run.label, run.h, metric, measured, order,
-                                 run.seconds, run.steps);
+                s += fmt::format("{},{},{:.9g},{},{:.9g},{},{:.3f},{},{}\n", v.plan.name, run.label, run.h, metric, measured, order,
+                                 run.seconds, run.steps, band);
             }
     return s;
 }
@@ -124,6 +129,7 @@ nlohmann::json verdicts_json(const CaseResult& result) {
                             {"criterion", verdict.criterion},
                             {"at", verdict.at},
                             {"measured", verdict.measured},
+                            {"band", verdict.band},
                             {"bound", bound_json(verdict)},
                             {"pass", verdict.pass},
                             {"seconds", verdict.seconds},

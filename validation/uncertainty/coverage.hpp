@@ -1,7 +1,7 @@
 // How often the bands of weir plan contain the true error, and how often its advice is wrong: over quantities whose true value is known,
 // each on a ladder of grids.
 #pragma once
-#include "validation/uncertainty/band.hpp"
+#include "validation/harness/band.hpp"
 
 #include <cstddef>
 #include <functional>

@@ -4,7 +4,7 @@
 #include "scene/names.hpp"
 #include "sim/balance.hpp"
 #include "sim/simulation.hpp"
-#include "validation/uncertainty/band.hpp"
+#include "validation/harness/band.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // The ladder of one method: its runs, what they cost, and the uncertainty of every asked quantity on every grid.
 #pragma once
 #include "validation/uncertainty/asked.hpp"
-#include "validation/uncertainty/band.hpp"
+#include "validation/harness/band.hpp"
 #include "validation/uncertainty/ladder.hpp"
 #include "validation/uncertainty/run_store.hpp"
 

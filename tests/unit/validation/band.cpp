@@ -1,5 +1,5 @@
 // The band of three grids on sequences whose limit is known.
-#include "validation/uncertainty/band.hpp"
+#include "validation/harness/band.hpp"
 
 #include "core/error.hpp"
 #include "support/test.hpp"

@@ -51,6 +51,23 @@ TEST("NaN, infinity and a metric that was not measured fail every kind of claim"
     EXPECT_FALSE(judged(claim(Test::at_most, -inf, 10), {run(8, inf)}).pass);
 }
 
+TEST("a value of a sweep over three grids has a band, and its claim is judged by it") {
+    Criterion uncertainty = claim(Test::gci_at_most, -inf, 0.1), bound = claim(Test::at_least, 1, inf);
+    uncertainty.metric = bound.metric = "kinetic_energy";
+    const Variant plan{.name = "v", .sweep = Sweep{.key = "grid.cells", .values = {10, 20, 40}}, .accept = {uncertainty, bound}};
+    std::vector<RunResult> runs = {run(10, 0), run(20, 0), run(40, 0)};
+    for (RunResult& r : runs) r.measured = {{"kinetic_energy", 2 + 4 * r.h}};
+    const auto verdicts = judge(plan, runs);
+    EXPECT_NEAR(verdicts[0].measured, 1.5 * 0.1 / 2.1, 1e-9);  // first order: U = 1.5 times the error
+    EXPECT_TRUE(verdicts[0].pass);
+    EXPECT_NEAR(verdicts[1].band, 0.15, 1e-9);
+    runs[1].measured["kinetic_energy"] = 2;
+    const Verdict oscillating = judge(plan, runs)[0];
+    EXPECT_EQ(oscillating.note, "oscillates");
+    EXPECT_NEAR(oscillating.measured, 2 * 0.4 / 2 / 2.1, 1e-9);  // the coarse difference counts
+    EXPECT_FALSE(oscillating.pass);
+}
+
 TEST("a run that failed fails the claims that rest on it, with its message, and no other") {
     RunResult broken = run(16, 0.01);
     broken.failure = "step 41: the velocity is not finite";

@@ -1,4 +1,4 @@
-#include "validation/uncertainty/band.hpp"
+#include "validation/harness/band.hpp"
 
 #include "core/error.hpp"
 
