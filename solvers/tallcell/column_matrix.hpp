@@ -158,7 +158,6 @@ struct ColumnMatrix : ColumnPlaces {
         return std::array{&share, &vertical, &lid, &sink, &sink_next, &beside[0], &beside_next[0], &beside[1], &beside_next[1]};
     }
     std::size_t bytes() const;
-    /// In parallel, the bytes that each rank sends per row.
 
 private:
     /// Properties of a row within this rank's lines.

@@ -31,9 +31,29 @@ bool within_reference(const Study& study, const CostPoint& p) { return study.kno
 
 std::string plain(const CostPoint& p) { return p.name().empty() ? "the only configuration" : p.name(); }
 
+constexpr real largest_drift = 0.01;  // of the volume; what changes it more is not recommended, however small its error
+
+/// Relative change of the volume over the run, where the study measures it.
+real volume_drift(const CostPoint& p) {
+    const auto drift = p.also.find("volume.drift");
+    return drift == p.also.end() ? 0 : std::abs(drift->second);
+}
+
+/// Which configurations create or lose liquid; nothing where none does.
+std::string that_volume_changes(const Points& by_price) {
+    std::vector<std::string> names;
+    real most = 0;
+    for (const CostPoint* p : by_price)
+        if (volume_drift(*p) > largest_drift) names.push_back(plain(*p)), most = std::max(most, volume_drift(*p));
+    if (names.empty()) return "";
+    return fmt::format("The volume changes by more than {:g}% with {}: by up to {:.2g}%. They are not recommended.", 100 * largest_drift,
+                       fmt::join(names, ", "), 100 * most);
+}
+
 /// The cheapest setting that is good enough: what somebody can take.
 std::string at_good_enough(const Study& study, const Points& by_price) {
-    const auto good = std::find_if(by_price.begin(), by_price.end(), [&](auto* p) { return p->error <= study.good_enough; });
+    const auto good = std::find_if(by_price.begin(), by_price.end(),
+                                   [&](auto* p) { return p->error <= study.good_enough && volume_drift(*p) <= largest_drift; });
     if (good == by_price.end()) {
         const auto nearest = *std::min_element(by_price.begin(), by_price.end(), [](auto* a, auto* b) { return a->error < b->error; });
         return fmt::format("No configuration reaches {} = {:g}; the nearest is {} with {:.3g}, for {}.", study.error, study.good_enough,
@@ -146,6 +166,7 @@ std::vector<std::string> advice(const StudyResult& result) {
     std::sort(by_price.begin(), by_price.end(), [&](auto* a, auto* b) { return a->price(study.price) < b->price(study.price); });
     std::vector<std::string> sentences;
     if (study.good_enough > 0) sentences.push_back(at_good_enough(study, by_price));
+    if (const std::string changes = that_volume_changes(by_price); !changes.empty()) sentences.push_back(changes);
     if (const std::string ranks = study.good_enough > 0 ? ranks_at_good_enough(result) : ""; !ranks.empty()) sentences.push_back(ranks);
     if (study.price == Price::second) sentences.push_back(in_real_time(study, by_price));
     const std::string in_vain = that_finer_does_not_pay(study, by_price);
