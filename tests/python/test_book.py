@@ -65,7 +65,7 @@ def desk(tmp_path, executable):
 
 
 def run(command, desk, expected=0):
-    done = subprocess.run(command, cwd=desk[0], env=desk[1], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+    done = subprocess.run(command, cwd=desk[0], env=desk[1], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300)
     assert done.returncode == expected, f"{command}: exit code {done.returncode}\n{done.stdout}"
     return done.stdout
 

@@ -58,6 +58,7 @@ Window parse_window(std::string_view text, std::string_view whole) {
     if (dots > 0) window.first = time(text.substr(0, dots));
     if (dots + 2 < text.size()) window.last = time(text.substr(dots + 2));
     if (!(window.first < window.last) || text.size() == 2) refuse(whole, fmt::format("@{} is an empty interval", text));
+    if (window.first == 0) window.first = -infinity;  // from the beginning of the series, which may be the first step
     return window;
 }
 
@@ -169,6 +170,8 @@ NamedQuantity parse_quantity(std::string_view text) {
     if (name.starts_with("probe.")) name.remove_prefix(6);  // as metrics of cases name probes
     if (name.empty()) refuse(text, "the name is missing");
     q.series = std::string(name);
+    if (q.kind == Statistic::picture && !q.when.one_time() && (q.when.first > -infinity || q.when.last < infinity))
+        refuse(text, "a picture is of one time; write @2.5, or nothing for the end");
     if (q.when.one_time() && q.kind != Statistic::end && q.kind != Statistic::picture)
         refuse(text, fmt::format("{} of one time means nothing; write an interval, such as @{}..", q.statistic, q.when.first));
     return q;

@@ -18,14 +18,14 @@ namespace {
 constexpr int samples_of_curve = 100;
 constexpr int widest_2d = 64, widest_3d = 16;  // samples of a picture along an axis
 
-std::string picture_name(std::size_t number, std::size_t line) { return fmt::format("picture_{}_{}", number, line); }
+std::string picture_name(std::size_t number, std::size_t line) { return fmt::format("weir_picture_{}_{}", number, line); }
 
 /// The times at which a curve is sampled: none at the start, where all grids agree.
 std::vector<real> times_of_curve(const Curve& series, const Window& window) {
     if (series.x.empty()) return {};
-    const real first = std::max(window.first, series.x.front()), last = std::min(window.last, series.x.back());
-    std::vector<real> times;
-    for (int i = 1; i <= samples_of_curve; ++i) times.push_back(first + (last - first) * i / samples_of_curve);
+    const real first = std::max(window.first, real(0)), last = std::min(window.last, series.x.back());
+    std::vector<real> times;  // alike on all grids; before its first value a series has that value
+    for (int i = 1; i <= samples_of_curve; ++i) times.push_back(std::max(series.x.front(), first + (last - first) * i / samples_of_curve));
     return times;
 }
 
@@ -41,15 +41,15 @@ void set_scale(Value& value, const NamedQuantity& quantity, const RecordedSeries
     if (part.y.empty()) return;
     const real range = *most - *least, largest = std::max(std::abs(*least), std::abs(*most));
     const bool positive = series.integral && *least >= 0;
-    value.scale = positive || range < 1e-9 * largest ? largest : range;
-    value.scale_of = positive || range < 1e-9 * largest ? "its largest value" : "its range";
+    value.scale = positive || range < no_variation * largest ? largest : range;
+    value.scale_of = positive || range < no_variation * largest ? "its largest value" : "its range";
     if (const real of_unit = largest_of_unit(run, series.unit); value.scale < round_off * of_unit)
         value.scale = of_unit, value.scale_of = "the largest value in " + series.unit + ", since it is round-off";
 }
 
 Value picture_of(const RecordedRun& run, const Asked& asked, std::size_t number) {
     Value value;
-    const std::string prefix = fmt::format("picture_{}_", number);
+    const std::string prefix = fmt::format("weir_picture_{}_", number);
     real least = infinity, most = -infinity;
     for (const RecordedSeries& s : run.series) {
         if (!s.name.starts_with(prefix)) continue;
@@ -82,7 +82,8 @@ Wish parse_wish(const std::string& text) {
     static const std::map<std::string, std::pair<std::string, real>> units{{"mm", {"m", 1e-3}},  {"cm", {"m", 1e-2}}, {"um", {"m", 1e-6}},
                                                                            {"ms", {"s", 1e-3}},  {"us", {"s", 1e-6}}, {"kPa", {"Pa", 1e3}},
                                                                            {"mbar", {"Pa", 100}}};
-    if (wrong != std::errc() || !(wish.value > 0))
+    const bool no_unit = unit != "%" && unit.find_first_of("%,;:\"'") != std::string::npos;
+    if (wrong != std::errc() || !(wish.value > 0) || !std::isfinite(wish.value) || no_unit)
         throw BadInput(fmt::format("--error {}: expected a positive number, such as 5%, 2mm or 0.02", text));
     wish.relative = unit == "%";
     if (wish.relative)
@@ -112,6 +113,7 @@ std::vector<scene::Override> picture_probes(const std::vector<Asked>& asked, con
     const auto& size = scene.root().numbers("grid.size");
     const auto& cells = scene.root().numbers("grid.cells");
     const int widest = scene.dim() == 2 ? widest_2d : widest_3d;
+    const std::vector<double> origin = scene.has("grid.origin") ? scene.root().numbers("grid.origin") : std::vector<double>(size.size(), 0);
     std::array<int, 3> n{1, 1, 1};
     for (std::size_t a = 0; a < cells.size(); ++a) n[a] = std::min(widest, static_cast<int>(cells[a]));
     for (std::size_t q = 0; q < asked.size(); ++q) {
@@ -122,7 +124,7 @@ std::vector<scene::Override> picture_probes(const std::vector<Asked>& asked, con
         std::size_t line = 0;
         for (int k = 0; k < n[2]; ++k)
             for (int j = 0; j < n[1]; ++j) {
-                const auto at = [&](std::size_t axis, int i) { return size[axis] * (i + 0.5) / n[axis]; };
+                const auto at = [&](std::size_t axis, int i) { return origin[axis] + size[axis] * (i + 0.5) / n[axis]; };
                 const auto point = [&](int i) {
                     return cells.size() == 2 ? fmt::format("[{}, {}]", at(0, i), at(1, j))
                                              : fmt::format("[{}, {}, {}]", at(0, i), at(1, j), at(2, k));

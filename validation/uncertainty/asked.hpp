@@ -45,6 +45,8 @@ std::vector<real> whole_series(const RecordedRun& run, const Asked& asked);
 /// The largest magnitude of all series of this unit in a run. Below round_off times that, a series is round-off.
 real largest_of_unit(const RecordedRun& run, const std::string& unit);
 inline constexpr real round_off = 1e-9;
+/// A series whose range is below this part of its size does not vary: pressure solves end at such tolerances.
+inline constexpr real no_variation = 1e-6;
 
 /// The wish in the unit of the quantity. Throws BadInput where the units do not fit.
 real absolute(const Wish& wish, const Value& value);

@@ -16,6 +16,7 @@
 namespace weir::validation {
 namespace {
 
+constexpr int fewest_rows = 300;      // of a probe over the run
 constexpr int fewest_cells = 4;       // along an axis
 constexpr double thinnest_solid = 2;  // cells: a thinner one blocks the flow, but its forces and its edges are of no use
 constexpr int largest_search = 64;    // numbers that are tried for the coarsest grid
@@ -55,6 +56,17 @@ std::vector<int> cells_for(const std::string& solver, const scene::Scene& scene)
     return cells;
 }
 
+/// Probes with few rows get more: their interpolation would be an error that no grid shows. Lines have many values per row, and stay.
+std::vector<std::pair<std::string, std::string>> sampling(const scene::Scene& scene) {
+    std::vector<std::pair<std::string, std::string>> changes;
+    const real longest = scene.number("time.end") / fewest_rows;
+    const auto& probes = scene.root().tables("probes");
+    for (std::size_t i = 0; i < probes.size(); ++i)
+        if (probes[i].has("every") && probes[i].number("every") > longest * (1 + 1e-9) && probes[i].text("kind") != "line")
+            changes.emplace_back(fmt::format("probes[{}].every", i), fmt::format("{:.9g}", longest));
+    return changes;
+}
+
 std::string text_of(const scene::Scene& scene, const char* key) { return scene.has(key) ? scene.text(key) : ""; }
 
 }  // namespace
@@ -76,9 +88,8 @@ Method method_of(const scene::Scene& scene, const std::string& word, const Solve
     method.overrides.insert(method.overrides.end(), words.more.begin(), words.more.end());
     try {
         method.formal_order = formal_order(method.solver, text_of(scene_of(scene, method, solvers), "scheme.advection"));
-    } catch (const BadInput& wrong) {
-        if (word.empty()) throw;
-        throw BadInput(fmt::format("{} cannot simulate this scene:\n{}", word, wrong.what()));
+    } catch (const BadInput&) {
+        if (word.empty()) throw;  // of another solver the ladder says what is wrong
     }
     return method;
 }
@@ -109,6 +120,7 @@ Grid Ladder::grid(int number, real dt, int dt_number) const {
         set("time.dt", fmt::format("{:.9g}", scene_.number("time.dt") * grid.factor));
     else if (longest < infinity)
         set("time.max_dt", fmt::format("{:.9g}", longest));
+    for (const auto& [key, every] : sampling(scene_)) set(key.c_str(), every);
     if (method_.solver == "tallcell" && scene_.has("scheme.layers"))
         set("scheme.layers", fmt::format("{}", std::lround(static_cast<real>(scene_.integer("scheme.layers")) / grid.factor)));
     return grid;

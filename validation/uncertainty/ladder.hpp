@@ -20,7 +20,7 @@ struct Method {
 
 /// The method `word` of a scene: a solver; "SOLVER:KEY=VALUE"; or a model of height fields ("shallow_water", "columns"). Another solver
 /// takes the scene without its table `scheme`; height fields and waves have one cell along the vertical. An empty word: the scene's own.
-/// Throws BadInput where that solver cannot simulate the scene.
+/// Throws BadInput for an unknown solver; whether it can simulate the scene shows when its ladder is made.
 Method method_of(const scene::Scene& scene, const std::string& word, const Solvers& solvers);
 /// The scene with a method's solver, at the scene's own grid.
 scene::Scene scene_of(const scene::Scene& scene, const Method& method, const Solvers& solvers);
@@ -47,7 +47,7 @@ public:
     /// and what the solver requires. The reason why coarser ones are left out is in `left_out`.
     int coarsest(std::string& left_out) const;
     /// The grid of this number. Its time.dt and time.max_dt are those of the scene times the ratio of the cells; with `dt` and `dt_number`,
-    /// the mean step of that coarser grid, steps are at most dt times the ratio of the cells.
+    /// the mean step of that coarser grid, steps are at most dt times the ratio of the cells. Probes have at least 300 rows.
     Grid grid(int number, real dt = 0, int dt_number = 1) const;
     /// The scene on this grid, with more overrides. Throws BadInput where the solver does not accept it.
     scene::Scene scene(const Grid& grid, const std::vector<scene::Override>& more = {}) const;

@@ -15,6 +15,7 @@ namespace {
 constexpr double margin = 1.35;    // over a power law of two grids: measured on 19 scenes the estimate is 0.75 to 1.04 of the true time
 constexpr real rung_ratio = 1.45;  // of the cells of neighbouring grids
 constexpr real least_ratio = 1.2, most_ratio = 1.7;
+constexpr double most_cells_at_first = 20000;
 constexpr int most_grids = 12, fewest_grids = 3;
 constexpr std::size_t grids_before_chaos = 4;  // no finer grids for a value that chaos refuses
 
@@ -116,13 +117,31 @@ bool out_of_reach(const MethodStudy& study, const Climber& climber, const std::v
     return study.grids.size() >= 5 && wanted > 0 && climber.seconds_far(wanted) > 100 * limits.time_limit;
 }
 
+/// Whether no quantity has a value on the finest grid.
+bool none_known(const MethodStudy& study) {
+    return std::all_of(study.quantities.begin(), study.quantities.end(), [](const auto& q) { return !q.finest().unknown.empty(); });
+}
+
+/// Where a ladder begins: some grids below the scene's own, and coarse enough to be run within seconds.
+int first_number(const Ladder& ladder, int least, int own, int rungs) {
+    int number = numbers_of_ladder(least, own, rungs, rung_ratio).front();
+    const auto cells = [&](int n) {
+        double all = 1;
+        for (const int along : ladder.grid(n).cells) all *= along;
+        return all;
+    };
+    while (number > least && cells(number) > most_cells_at_first) number = std::max(least, static_cast<int>(number / rung_ratio));
+    return number;
+}
+
 /// From coarse to fine. The first two grids price the others; with a wish the ladder ends where it is met.
 void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std::vector<Asked>& asked, const std::vector<Wish>& wishes,
            const Limits& limits, RunStore& store, const Tell& tell) {
     const int least = ladder.coarsest(study.left_out), own = std::max(ladder.own(), least);
-    climber.add(numbers_of_ladder(least, own, limits.rungs, rung_ratio).front());
+    climber.add(first_number(ladder, least, own, limits.rungs));
+    if (study.grids.front().run.failure) return;
     climber.add(next_number(study.grids.front().grid.number, own));
-    assess(study, asked);
+    assess(study, asked, wishes);
     if (limits.checks && !study.grids.back().run.failure) study_coarsest_grid(study, ladder, climber.more(), store, tell);
     const bool to_own = wishes.empty() && limits.budget == infinity;
     for (bool first = true; !study.grids.back().run.failure; first = false) {
@@ -135,17 +154,18 @@ void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std
                              study.grids.front().grid.text(), ladder.grid(rest.back()).text(), seconds_text(study.estimated)));
         }
         climber.add(rest.front());
-        assess(study, asked);
+        assess(study, asked, wishes);
         if (limits.checks && study.grids.size() == grids_before_chaos && !study.grids.back().run.failure)
             study_chaos(study, ladder, climber.more(), store, tell);
-        if (refuse_after_chaos(study)) break;
+        if (refuse_after_chaos(study) || none_known(study)) break;
         if (!wishes.empty() && (met(study, wishes) || out_of_reach(study, climber, wishes, limits))) break;
     }
 }
 
 /// The grid that would meet the wishes, and its computing time.
 void estimate_next(MethodStudy& study, const Climber& climber, const std::vector<Wish>& wishes) {
-    study.next = wishes.empty() || met(study, wishes) ? 0 : number_for(study, wishes);
+    const bool finer_helps = !wishes.empty() && !met(study, wishes) && !study.chaotic_after;
+    study.next = finer_helps ? number_for(study, wishes) : 0;
     if (study.next > 0) study.next_seconds = climber.seconds_far(study.next);
 }
 
@@ -156,7 +176,7 @@ Grid next_grid(const Ladder& ladder, const std::vector<GridRun>& runs, int numbe
     return ladder.grid(number, runs.front().run.mean_dt, runs.front().grid.number);
 }
 
-void assess(MethodStudy& study, const std::vector<Asked>& asked) {
+void assess(MethodStudy& study, const std::vector<Asked>& asked, const std::vector<Wish>& wishes) {
     study.quantities.resize(asked.size());
     for (std::size_t q = 0; q < asked.size(); ++q) {
         QuantityStudy& quantity = study.quantities[q];
@@ -179,7 +199,8 @@ void assess(MethodStudy& study, const std::vector<Asked>& asked) {
         quantity.width = quantity.band->width + quantity.finer * (quantity.step + quantity.seeds);
         for (const GridValue& v : values) quantity.error.push_back(distance(v.value, values.back().value) + quantity.width);
         const real scale = quantity.finest().scale;
-        if (scale > 0 && quantity.width > widest_band * scale)
+        const bool absolute_wish = q < wishes.size() && !wishes[q].relative;
+        if (!absolute_wish && scale > 0 && quantity.width > widest_band * scale)
             quantity.refused = fmt::format("the band is {:.0f}% of {}: too wide to recommend anything", 100 * quantity.width / scale,
                                            quantity.finest().scale_of);
     }
@@ -196,7 +217,7 @@ MethodStudy study_method(const scene::Scene& scene, const Method& method, const 
     if (std::any_of(study.grids.begin(), study.grids.end(), fails)) return study;
     if (limits.checks) {
         study_chaos(study, ladder, pictures, store, tell);
-        assess(study, asked);
+        assess(study, asked, wishes);
         refuse_after_chaos(study);
     }
     estimate_next(study, climber, wishes);

@@ -1,7 +1,7 @@
 // The ladder of one method: its runs, what they cost, and the uncertainty of every asked quantity on every grid.
 #pragma once
-#include "validation/uncertainty/asked.hpp"
 #include "validation/harness/band.hpp"
+#include "validation/uncertainty/asked.hpp"
 #include "validation/uncertainty/ladder.hpp"
 #include "validation/uncertainty/run_store.hpp"
 
@@ -68,7 +68,8 @@ MethodStudy study_method(const scene::Scene& scene, const Method& method, const 
                          const Limits& limits, RunStore& store, const Solvers& solvers, const Tell& tell);
 
 /// Width, bounds and refusals of the quantities for the grids that were run.
-void assess(MethodStudy& study, const std::vector<Asked>& asked);
+/// A band wider than widest_band of the scale is refused, unless its wish is an absolute value, which decides then.
+void assess(MethodStudy& study, const std::vector<Asked>& asked, const std::vector<Wish>& wishes = {});
 
 /// Grids that would be finer than this many times the finest one are not estimated.
 inline constexpr real farthest = 100;

@@ -18,6 +18,12 @@ constexpr real student = 2.571;  // two-sided 95% of Student's t with five degre
 constexpr int seeds = 3;
 constexpr std::size_t few_grids = 4;  // of a cheap ladder: coarse grids may damp what finer ones show
 
+real largest_of(const Curve& c) {
+    real largest = 0;
+    for (const real y : c.y) largest = std::max(largest, std::abs(y));
+    return largest;
+}
+
 /// A run with one more change; no value where the solver does not accept it or the run fails.
 const RecordedRun* changed_run(const Ladder& ladder, const Grid& grid, std::vector<scene::Override> more, const scene::Override& change,
                                RunStore& store) {
@@ -91,7 +97,7 @@ void run_twin(MethodStudy& study, const Ladder& ladder, const std::vector<scene:
         if (quantity.asked.is_metric || quantity.asked.quantity.kind == Statistic::picture) continue;
         const auto& name = quantity.asked.quantity.series;
         const RecordedSeries& series = series_named(second.run.series, name);
-        const real least = round_off * largest_of_unit(second.run, series.unit);
+        const real least = std::max(round_off * largest_of_unit(second.run, series.unit), no_variation * largest_of(series.curve));
         const auto time = time_of_parting(series.curve, series_named(twin->series, name).curve, least);
         if (time && (!study.chaotic_after || *time < *study.chaotic_after)) study.chaotic_after = time;
     }

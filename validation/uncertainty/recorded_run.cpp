@@ -40,6 +40,15 @@ std::pair<std::string, std::string> name_and_unit(const std::string& column) {
     return {column.substr(0, open), column.substr(open + 2, column.size() - open - 3)};
 }
 
+/// Pressures and forces are results of a step: before the first one has ended they are zero, or on their way from zero.
+void drop_before_first_step(RecordedSeries& series, real first_dt) {
+    if (!series.unit.starts_with("Pa") && !series.unit.starts_with("N")) return;
+    std::size_t first = 0;
+    while (first < series.curve.x.size() && series.curve.x[first] < first_dt * (1 - 1e-12)) ++first;
+    const auto drop = [&](std::vector<real>& list) { list.erase(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(first)); };
+    drop(series.curve.x), drop(series.curve.y);
+}
+
 std::vector<RecordedSeries> series_of(const RunRecord& record) {
     std::vector<RecordedSeries> all;
     for (const ProbeSeries& probe : record.probes)
@@ -48,6 +57,8 @@ std::vector<RecordedSeries> series_of(const RunRecord& record) {
             all.push_back({.name = probe.name + "." + name, .unit = unit, .integral = probe.kind == "integral", .curve = column(probe, c)});
         }
     for (const Integral& i : record.integrals) all.push_back({i.name, i.unit, true, record.series(i.name)});
+    if (record.history.size() > 1)
+        for (RecordedSeries& series : all) drop_before_first_step(series, record.history[1].time);
     return all;
 }
 

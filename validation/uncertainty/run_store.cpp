@@ -34,12 +34,33 @@ std::int64_t time_of_program() {
     return std::filesystem::last_write_time(module ? info.dli_fname : "/proc/self/exe", none).time_since_epoch().count();
 }
 
-/// What a run depends on: the program and the whole scene, not how it is written. Output changes no result.
+/// The content of every file that the scene names (terrain, meshes), as a hash: every text in quotes that is the path of one.
+std::string files_of(const scene::Scene& scene, const std::string& text) {
+    const auto folder = std::filesystem::path(scene.file()).parent_path();
+    std::string hashes;
+    for (std::size_t open = text.find('"'), close = 0; open != std::string::npos; open = text.find('"', close + 1)) {
+        close = text.find('"', open + 1);
+        if (close == std::string::npos) break;
+        const std::filesystem::path file = folder / text.substr(open + 1, close - open - 1);
+        std::error_code none;
+        if (close == open + 1 || !std::filesystem::is_regular_file(file, none)) continue;
+        std::ifstream content(file, std::ios::binary);
+        hashes += fmt::format("{} {:016x}\n", file.filename().string(), hash({std::istreambuf_iterator<char>(content), {}}));
+    }
+    return hashes;
+}
+
+/// What a run depends on: the program, the whole scene, not how it is written, and its files. Output changes no result, unless steps are
+/// shortened to meet frames.
 std::string key_of(const scene::Scene& scene) {
     scene::Table root = scene.root();
-    root.erase("output"), root.erase("title");
+    root.erase("title");
+    const bool meets_frames = scene.has("output.at") && scene.text("output.at") == "exact";
+    if (!meets_frames) root.erase("output");
     const output::Machine machine = output::this_machine();
-    return fmt::format("{} {} {} {}\n{}", machine.version, machine.commit, machine.rounding, time_of_program(), scene::to_toml(root));
+    const std::string text = scene::to_toml(root);
+    return fmt::format("{} {} {} {}\n{}{}", machine.version, machine.commit, machine.rounding, time_of_program(), text,
+                       files_of(scene, text));
 }
 
 /// A kept run: a line with the checksum of its scene and of its text, then the text.
@@ -74,7 +95,10 @@ bool RunStore::has(const scene::Scene& scene) const {
 const RecordedRun& RunStore::run(const scene::Scene& scene) {
     const std::string key = key_of(scene);
     if (const auto known = runs_.find(key); known != runs_.end()) return known->second;
-    if (std::ifstream file(folder_ / file_of(key).filename()); !folder_.empty() && file) try {
+    std::error_code none;
+    const bool kept_there = !folder_.empty() && std::filesystem::is_regular_file(std::filesystem::symlink_status(file_of(key), none));
+    if (kept_there) try {
+            std::ifstream file(file_of(key));
             RecordedRun kept = kept_run(file, key);
             if (has_metrics(kept, metrics_)) return runs_[key] = std::move(kept);
         } catch (const BadInput&) {  // damaged, or of another version: made again
@@ -82,7 +106,8 @@ const RecordedRun& RunStore::run(const scene::Scene& scene) {
     RecordedRun& made = runs_[key] = record_run(scene, metrics_, time_limit_, *solvers_);
     seconds_ += made.seconds;
     const bool out_of_time = made.failure && made.seconds > time_limit_;
-    if (folder_.empty() || out_of_time) return made;
+    const bool taken = std::filesystem::exists(std::filesystem::symlink_status(file_of(key), none)) && !kept_there;  // not ours
+    if (folder_.empty() || out_of_time || taken) return made;
     const std::string text = to_json(made);
     output::write_file(file_of(key), checksum_line(key, text) + text);
     return made;

@@ -22,8 +22,9 @@ namespace {
 
 /// "cases/plume/scene.toml" and "cases/plume" are plume.
 std::string name_of(const std::filesystem::path& file) {
-    const auto stem = file.stem().string();
-    return stem == "scene" ? std::filesystem::absolute(file).parent_path().filename().string() : stem;
+    const auto whole = std::filesystem::weakly_canonical(std::filesystem::is_directory(file) ? file / "scene.toml" : file);
+    const auto stem = whole.stem().string();
+    return stem == "scene" ? whole.parent_path().filename().string() : stem;
 }
 
 std::vector<std::string> words(const std::string& list) {
@@ -47,7 +48,8 @@ std::vector<Wish> wishes_of(const ScenePlanOptions& options, std::size_t quantit
 std::vector<Method> methods_of(const scene::Scene& scene, const std::string& with, const Solvers& solvers) {
     std::vector<Method> methods{method_of(scene, "", solvers)};
     for (const auto& word : words(with))
-        if (word != scene.solver()) methods.push_back(method_of(scene, word, solvers));
+        if (std::none_of(methods.begin(), methods.end(), [&](const Method& m) { return m.name == word; }))
+            methods.push_back(method_of(scene, word, solvers));
     return methods;
 }
 
@@ -89,8 +91,13 @@ std::vector<RecordedSeries> series_of(const scene::Scene& scene, const Method& m
 
 /// Throws BadInput before a run where a quantity is missing, or its series is none of the scene's.
 void check_asked(const std::vector<Asked>& asked, const scene::Scene& scene, const std::vector<RecordedSeries>& series) {
-    for (const Asked& a : asked)
+    const real end = scene.number("time.end");
+    for (const Asked& a : asked) {
         if (!a.is_metric && a.quantity.kind != Statistic::picture) series_named(series, a.quantity.series);
+        for (const real t : {a.quantity.when.first, a.quantity.when.last})
+            if (std::isfinite(t) && t > end * (1 + 1e-12))
+                throw BadInput(fmt::format("{}: t = {:g} s is after the end of the scene, {:g} s", a.quantity.text, t, end));
+    }
     if (!asked.empty()) return;
     std::vector<std::string> names;
     std::string example = "kinetic_energy";  // of a scene without probes
@@ -104,6 +111,13 @@ void check_asked(const std::vector<Asked>& asked, const scene::Scene& scene, con
                     scene.file(), fmt::join(names, ", "), example));
 }
 
+/// Throws BadInput before a run where an absolute error has another unit than its quantity.
+void check_units(const std::vector<Asked>& asked, const std::vector<Wish>& wishes, const std::vector<RecordedSeries>& series) {
+    for (std::size_t q = 0; q < wishes.size(); ++q)
+        if (!asked[q].is_metric && asked[q].quantity.kind != Statistic::picture)
+            absolute(wishes[q], {.unit = unit_of(asked[q].quantity, series_named(series, asked[q].quantity.series).unit)});
+}
+
 /// Methods that have become chaotic before the end of the asked times are not compared: their series differ for that reason.
 bool comparable(const PlannedMethod& m) { return m.study.solver_fails.empty() && !m.study.chaotic_after; }
 
@@ -115,8 +129,10 @@ ScenePlan plan_scene(const ScenePlanOptions& options, const Solvers& solvers, co
     const scene::Scene scene = scene::read(plan.file, scene::schemas_of(solvers), options.set);
     const std::vector<Method> methods = methods_of(scene, options.with, solvers);
     if (!options.of.empty()) plan.asked = parse_asked(options.of);
-    check_asked(plan.asked, scene, series_of(scene, methods.front(), solvers));
+    const auto series = series_of(scene, methods.front(), solvers);
+    check_asked(plan.asked, scene, series);
     plan.wishes = wishes_of(options, plan.asked.size());
+    check_units(plan.asked, plan.wishes, series);
     if (!options.budget.empty()) plan.limits.budget = parse_seconds(options.budget);
     if (!options.frame.empty()) plan.limits.frame = parse_seconds(options.frame);
     if (!options.time_limit.empty()) plan.limits.time_limit = parse_seconds(options.time_limit);

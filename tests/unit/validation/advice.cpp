@@ -45,10 +45,10 @@ TEST("a configuration that is slower than real time takes no part of a frame") {
 }
 
 TEST("a configuration that creates liquid is not recommended, and is named") {
-    CostPoint leaks = point("cheap", 0.1, 0.1), holds = point("dear", 0.15, 0.5);
+    CostPoint leaks = point("cheap", 0.1, 0.1), holds = point("sure", 0.15, 0.5);
     leaks.also["volume.drift"] = -0.09, holds.also["volume.drift"] = 0.009;
     const auto sentences = advice(study({leaks, holds}, 0.2));
-    EXPECT_EQ(sentences[0].substr(0, 23), "For e <= 0.2 take dear:");
+    EXPECT_EQ(sentences[0].substr(0, 23), "For e <= 0.2 take sure:");
     EXPECT_EQ(sentences[1], "The volume changes by more than 1% with cheap: by up to 9%. They are not recommended.");
 }
 

@@ -59,6 +59,7 @@ TEST("wrong names say what is allowed") {
     expect_refused("front.time_of(>0.4", "')' is missing");
     expect_refused("e@2..1", "empty interval");
     expect_refused("e@-1", "is no time");
+    expect_refused("pressure.picture@1..2", "a picture is of one time");
     expect_refused("e.max@2", "of one time means nothing");
     expect_refused("@2", "the name is missing");
     expect_refused(".max", "the name is missing");

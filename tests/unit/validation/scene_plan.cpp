@@ -91,6 +91,8 @@ TEST("a band wider than a fifth of the scale and a value that one grid does not 
     const auto asked = parse_asked({"a.height"});
     assess(wide, asked);
     EXPECT_NE(wide.quantities[0].refused.find("25% of its range"), std::string::npos) << wide.quantities[0].refused;
+    assess(wide, asked, {parse_wish("0.4")});
+    EXPECT_EQ(wide.quantities[0].refused, "") << "an absolute error decides by itself";
     MethodStudy unknown = study_of({1.4, std::nan(""), 1.1});
     assess(unknown, asked);
     EXPECT_NE(unknown.quantities[0].refused.find("not known on 20 x 1 cells"), std::string::npos) << unknown.quantities[0].refused;
@@ -141,7 +143,7 @@ TEST("wishes are parts of a scale or have a unit") {
     EXPECT_NEAR(absolute(parse_wish("0.02"), height), 0.02, 1e-15);
     EXPECT_THROW(absolute(parse_wish("2ms"), height), BadInput);
     EXPECT_THROW(parse_wish("-1%"), BadInput);
-    EXPECT_THROW(parse_wish("wide"), BadInput);
+    for (const char* wrong : {"wide", "5%%", "1,5%", "2mm,3mm", "inf", "nan"}) EXPECT_THROW(parse_wish(wrong), BadInput) << wrong;
     EXPECT_EQ(text_with_unit(0.3468, "m", 0.0017), "346.8 mm");
     EXPECT_EQ(text_with_unit(1.2, "m", 0.01), "1.200 m");
     EXPECT_EQ(text_with_unit(23456, "Pa", 100), "23.46 kPa");
