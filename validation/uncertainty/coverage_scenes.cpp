@@ -125,7 +125,7 @@ std::vector<real> exact_value(const CoverageQuantity& quantity, const Asked& ask
     if (quantity.value) return {*quantity.value};
     const RecordedRun& finest = climbed.runs.back().run;
     RecordedRun exact{.cells = finest.cells};
-    const std::string prefix = fmt::format("picture_{}_", number);
+    const std::string prefix = fmt::format("weir_picture_{}_", number);
     const bool picture = asked.quantity.kind == Statistic::picture;
     for (const RecordedSeries& s : finest.series) {
         if (picture ? !s.name.starts_with(prefix) : &s != &series_named(finest.series, asked.quantity.series)) continue;
