@@ -25,7 +25,8 @@ std::vector<real> times_of_curve(const Curve& series, const Window& window) {
     if (series.x.empty()) return {};
     const real first = std::max(window.first, real(0)), last = std::min(window.last, series.x.back());
     std::vector<real> times;  // alike on all grids; before its first value a series has that value
-    for (int i = 1; i <= samples_of_curve; ++i) times.push_back(std::max(series.x.front(), first + (last - first) * i / samples_of_curve));
+    for (int i = 1; i <= samples_of_curve; ++i)
+        times.push_back(std::clamp(first + (last - first) * i / samples_of_curve, series.x.front(), series.x.back()));
     return times;
 }
 

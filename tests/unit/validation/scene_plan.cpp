@@ -136,6 +136,14 @@ TEST("a series at the level of round-off is measured by the largest of its unit"
     EXPECT_EQ(study.quantities[0].refused, "");
 }
 
+TEST("a curve has values at all its times: the last one is not after the end by round-off") {
+    for (const real end : {0.1, 0.3, 0.7, 1.1, 1.3, 2.9}) {
+        RecordedRun run = study_of({1}).grids[0].run;
+        run.series[0].curve.x = {0.01 * end, end};
+        EXPECT_EQ(value_of(run, parse_asked({"a.height.curve"})[0], 0).unknown, "") << end;
+    }
+}
+
 TEST("wishes are parts of a scale or have a unit") {
     const Value height{.samples = {0.4}, .unit = "m", .scale = 0.1};
     EXPECT_NEAR(absolute(parse_wish("5%"), height), 0.005, 1e-15);
