@@ -180,10 +180,12 @@ NamedQuantity parse_quantity(std::string_view text) {
 Curve within(const Curve& series, const Window& window) {
     Curve part{.label = series.label};
     if (series.x.empty()) return part;
-    const real first = std::max(window.first, series.x.front()), last = std::min(window.last, series.x.back());
-    if (first > last || (std::isfinite(window.first) && window.first < series.x.front() - 1e-12 * std::abs(window.first)) ||
-        (std::isfinite(window.last) && window.last > series.x.back() * (1 + 1e-12)))
-        return part;
+    const real begin = series.x.front(), end = series.x.back();
+    const real row = series.size() > 1 ? end - series.x[series.size() - 2] : 0;  // the end of a run lies at most a row after the last one
+    const real late = std::max(row * (1 - 1e-6), 1e-9 * std::abs(end));
+    const auto known = [&](real t) { return !std::isfinite(t) || (t >= begin - 1e-9 * std::abs(begin) && t <= end + late); };
+    if (!known(window.first) || !known(window.last)) return part;
+    const real first = std::clamp(window.first, begin, end), last = std::clamp(window.last, begin, end);
     const auto add = [&](real t, real y) { part.x.push_back(t), part.y.push_back(y); };
     add(first, interpolate(series, first));
     for (std::size_t i = 0; i < series.size(); ++i)

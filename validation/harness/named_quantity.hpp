@@ -47,7 +47,8 @@ struct NamedQuantity {
 /// Throws BadInput, with what is allowed, where the text is no name of a quantity. Whether a run has such a series is not checked.
 NamedQuantity parse_quantity(std::string_view text);
 
-/// The part of the series within the window; values at its ends are interpolated. Empty where the series does not cover a finite end.
+/// The part of the series within the window; values at its ends are interpolated. Empty where the series does not cover a finite end. A
+/// time after the last row by less than the distance of two rows counts as that of the last row.
 Curve within(const Curve& series, const Window& window);
 
 /// The statistic of a series within the window; NaN where it is not known: no such event, a value that is not finite, or a window that the

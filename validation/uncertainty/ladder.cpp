@@ -63,7 +63,8 @@ std::vector<std::pair<std::string, std::string>> sampling(const scene::Scene& sc
     const auto& probes = scene.root().tables("probes");
     for (std::size_t i = 0; i < probes.size(); ++i)
         if (probes[i].has("every") && probes[i].number("every") > longest * (1 + 1e-9) && probes[i].text("kind") != "line")
-            changes.emplace_back(fmt::format("probes[{}].every", i), fmt::format("{:.9g}", longest));
+            changes.emplace_back(fmt::format("probes[{}].every", i),
+                                 fmt::format("{:.15g}", longest * (1 - 1e-12)));  // the last row is not beyond the end
     return changes;
 }
 

@@ -25,9 +25,9 @@ real largest_of(const Curve& c) {
 }
 
 /// A run with one more change; no value where the solver does not accept it or the run fails.
-const RecordedRun* changed_run(const Ladder& ladder, const Grid& grid, std::vector<scene::Override> more, const scene::Override& change,
-                               RunStore& store) {
-    more.push_back(change);
+const RecordedRun* changed_run(const Ladder& ladder, const Grid& grid, std::vector<scene::Override> more,
+                               const std::vector<scene::Override>& changes, RunStore& store) {
+    more.insert(more.end(), changes.begin(), changes.end());
     try {
         const RecordedRun& run = store.run(ladder.scene(grid, more));
         return run.failure ? nullptr : &run;
@@ -47,7 +47,7 @@ void halve_step(MethodStudy& study, const Ladder& ladder, const std::vector<scen
     const GridRun& coarsest = study.grids.front();
     const bool fixed = ladder.scene(coarsest.grid).has("time.dt");
     const scene::Override half{fixed ? "time.dt" : "time.max_dt", fmt::format("{:.9g}", 0.5 * coarsest.run.mean_dt)};
-    const RecordedRun* run = changed_run(ladder, coarsest.grid, more, half, store);
+    const RecordedRun* run = changed_run(ladder, coarsest.grid, more, {half}, store);
     if (!run) return;
     for (std::size_t q = 0; q < study.quantities.size(); ++q)
         if (const real change = change_of(study.quantities[q], q, *run); std::isfinite(change)) study.quantities[q].step = change;
@@ -60,7 +60,7 @@ void vary_seeds(MethodStudy& study, const Ladder& ladder, const std::vector<scen
     std::vector<const RecordedRun*> runs;
     for (int s = 1; s < seeds; ++s)
         if (const auto* run = changed_run(ladder, study.grids.front().grid, more,
-                                          {"scheme.seed", fmt::format("{}", scene.integer("scheme.seed") + s)}, store))
+                                          {{"scheme.seed", fmt::format("{}", scene.integer("scheme.seed") + s)}}, store))
             runs.push_back(run);
     for (std::size_t q = 0; q < study.quantities.size(); ++q) {
         real sum = 0;
@@ -73,25 +73,27 @@ void vary_seeds(MethodStudy& study, const Ladder& ladder, const std::vector<scen
     }
 }
 
-/// The scene changed by one part in a million: gravity where there is any, else the time step.
-scene::Override change_for_twin(const scene::Scene& scene, const RecordedRun& run, std::string& what) {
+/// The scene changed by one part in a million: gravity where there is any, else whatever sets the time step.
+std::vector<scene::Override> changes_for_twin(const scene::Scene& scene, std::string& what) {
     const scene::Table* gravity = scene.effect("gravity");
     if (gravity && gravity->has("g") && size_of(gravity->numbers("g")) > 0) {
         std::vector<std::string> g;
         for (const double component : gravity->numbers("g")) g.push_back(fmt::format("{:.15g}", component * (1 + twin_change)));
         what = "gravity changed by one millionth";
-        return {"effects.gravity.g", fmt::format("[{}]", fmt::join(g, ", "))};
+        return {{"effects.gravity.g", fmt::format("[{}]", fmt::join(g, ", "))}};
     }
     what = "the time step changed by one millionth";
-    const bool fixed = scene.has("time.dt");
-    const real dt = fixed ? scene.number("time.dt") : std::min(scene.root().number_or("time.max_dt", infinity), run.mean_dt);
-    return {fixed ? "time.dt" : "time.max_dt", fmt::format("{:.15g}", dt * (1 - twin_change))};
+    std::vector<scene::Override> changes;
+    for (const char* key : {"time.dt", "time.max_dt", "time.cfl"})
+        if (scene.has(key) && std::isfinite(scene.number(key)))
+            changes.push_back({key, fmt::format("{:.15g}", scene.number(key) * (1 - twin_change))});
+    return changes;
 }
 
 void run_twin(MethodStudy& study, const Ladder& ladder, const std::vector<scene::Override>& more, RunStore& store) {
     const GridRun& second = study.grids.at(study.grids.size() - (study.grids.size() > few_grids ? 2 : 1));
-    const scene::Override change = change_for_twin(ladder.scene(second.grid), second.run, study.twin);
-    const RecordedRun* twin = changed_run(ladder, second.grid, more, change, store);
+    const auto changes = changes_for_twin(ladder.scene(second.grid), study.twin);
+    const RecordedRun* twin = changed_run(ladder, second.grid, more, changes, store);
     if (!twin) return;
     for (const QuantityStudy& quantity : study.quantities) {
         if (quantity.asked.is_metric || quantity.asked.quantity.kind == Statistic::picture) continue;
@@ -112,7 +114,7 @@ void double_the_rest(MethodStudy& study, const Ladder& ladder, const std::vector
         const bool whole = std::string_view(key) == "scheme.iterations";
         const std::string now = whole ? fmt::format("{}", scene.integer(key)) : fmt::format("{:g}", scene.number(key));
         const std::string doubled = whole ? fmt::format("{}", 2 * scene.integer(key)) : fmt::format("{:.15g}", 2 * scene.number(key));
-        const RecordedRun* run = changed_run(ladder, coarsest, more, {key, doubled}, store);
+        const RecordedRun* run = changed_run(ladder, coarsest, more, {{key, doubled}}, store);
         for (std::size_t q = 0; q < study.quantities.size(); ++q) {
             QuantityStudy& quantity = study.quantities[q];
             const real change = run ? change_of(quantity, q, *run) : std::nan("");
