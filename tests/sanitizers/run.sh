@@ -5,7 +5,7 @@
 #   --part K/N     the jobs whose names fall to part K of N; K = now: by the number of commits, so that N commits in a row cover all
 #   --only KIND    unit, case or both (default)
 #   --steps N      of each run (default 12)
-#   --threads N    of the cases (default 1)
+#   --threads N    of the cases (default 1; the thread sanitizer finds races with 2)
 #   --jobs N       beside each other (default 1)
 #   --limit SEC    of one job (default 300)
 #   --out DIR      logs (default BUILD/sanitized)
