@@ -59,7 +59,7 @@ RunLog::RunLog(std::filesystem::path file, const scene::Scene& scene, const std:
                  {"commit", machine.commit},
                  {"machine", machine_json(machine)},
                  {"scene", scene_json(scene)}};
-    head_ = head.dump(1);
+    head_ = head.dump(1, ' ', false, replace_bad_text);
     head_.erase(head_.rfind('\n'));  // without the closing brace: more keys follow
 }
 
@@ -98,7 +98,7 @@ void RunLog::write() const {
     status.resize(std::max(status.size(), status_room), ' ');
     std::string text =
         head_ + status_key + status + ",\n \"series\": " + json(series_).dump() + ",\n \"solver_bytes\": " + std::to_string(solver_bytes_);
-    if (!warnings_.empty()) text += ",\n \"warnings\": " + json(warnings_).dump();
+    if (!warnings_.empty()) text += ",\n \"warnings\": " + json(warnings_).dump(-1, ' ', false, replace_bad_text);
     json measured = json::object();
     for (const auto& [name, value] : measured_) put(measured, name.c_str(), value);
     if (!measured.empty()) text += ",\n \"measured\": " + measured.dump();

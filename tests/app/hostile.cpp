@@ -88,6 +88,15 @@ TEST("names of folders with quotes, spaces, back quotes, pipes and % are names: 
     EXPECT_EQ(names_here(), (std::vector<std::string>{"'; touch W; '", "-x", name, "| touch Z;"}));
 }
 
+TEST("a path with bytes that are not UTF-8 is a path: runs and plans end as elsewhere") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    write("caf\xe9/small.toml", tiny_scene);
+    EXPECT_EQ(weir_says({"run", "caf\xe9/small.toml", "--out", "out", "--threads", "1"}).code, 0);
+    const Answer plan = weir_says({"plan", "caf\xe9/small.toml", "--of", "kinetic_energy", "--error", "1", "--out", "plan", "--quiet"});
+    EXPECT_EQ(plan.code, 0) << plan.text;
+}
+
 TEST("weir validate ends with 2 where a figure could not be drawn, and its numbers are there") {
     TemporaryFolder folder;
     const Inside here(folder.path());

@@ -132,7 +132,7 @@ std::string plan_json(const ScenePlan& plan) {
                      {"grid", plan.take->grid},
                      {"seconds_per_frame", plan.take->seconds},
                      {"command", run_line(plan, *plan.take)}};
-    return j.dump(1) + "\n";
+    return j.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 void draw_plan(const ScenePlan& plan, const std::filesystem::path& svg) {

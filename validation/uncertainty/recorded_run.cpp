@@ -173,7 +173,7 @@ std::string to_json(const RecordedRun& run) {
                                  {"integral", s.integral},
                                  {"t", json_numbers(s.curve.x)},
                                  {"values", json_numbers(s.curve.y)}});
-    return all.dump() + "\n";
+    return all.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 RecordedRun run_from_json(const std::string& text) {
