@@ -159,6 +159,32 @@ ModelStep model_step(double computing, const RankTraffic& sent, int ranks, const
     return {ranks, computing, rounds * link.latency + (static_cast<double>(sent.beside.bytes) + sent.received) / link.bandwidth};
 }
 
+namespace {
+
+/// What is tried to count messages: the scene, or a copy with fewer cells where it is large.
+struct Tried {
+    scene::Scene scene;
+    double area = 1;  // a plane of the scene's cells over one of the copy's
+};
+
+Tried tried_scene(const scene::Scene& scene, const CostEstimate& f, int ranks, const std::vector<scene::SolverKind>& kinds) {
+    if (f.held.cells <= most_cells_tried) return {scene};
+    Tried tried{sim::small_copy(scene, kinds, most_cells_tried, sim::Copy::similar)};
+    if (tried.scene.root().numbers("grid.cells").back() < fewest_planes_tried * ranks) return {scene};
+    double cells = 1;
+    for (const double n : tried.scene.root().numbers("grid.cells")) cells *= n;
+    tried.area = std::pow(f.held.cells / cells, (scene.dim() - 1.0) / scene.dim());
+    return tried;
+}
+
+/// The same messages with larger planes. Collective communication is of sums and of coarse grids, whose sizes hardly depend on the planes.
+RankTraffic wider(const RankTraffic& sent, double area) {
+    const auto scaled = [&](const Traffic& t) { return Traffic{t.messages, std::llround(static_cast<double>(t.bytes) * area)}; };
+    return {scaled(sent.beside), sent.everywhere, sent.rounds, sent.received};
+}
+
+}  // namespace
+
 ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstimate& f, int ranks, const std::optional<Link>& link,
                                       const std::vector<scene::SolverKind>& kinds) {
     sim::require_ranks(scene, ranks, kinds);
@@ -184,9 +210,11 @@ ParallelEstimate estimate_in_parallel(const scene::Scene& scene, const CostEstim
     }
     if (ranks == 1) return o;
     constexpr int first = 1, steps = 2;
-    const CountedSteps counted = count_messages(scene, std::min(ranks, most_tried), first, steps, kinds);
-    for (const RankTraffic& sent : counted.sent) o.sent.push_back(per_step(sent, steps));
+    const Tried tried = tried_scene(scene, f, std::min(ranks, most_tried), kinds);
+    const CountedSteps counted = count_messages(tried.scene, std::min(ranks, most_tried), first, steps, kinds);
+    for (const RankTraffic& sent : counted.sent) o.sent.push_back(wider(per_step(sent, steps), tried.area));
     o.iterations = counted.iterations;
+    if (tried.area != 1) o.tried = fmt::format("{}", fmt::join(tried.scene.root().numbers("grid.cells"), " x "));
     if (!o.nothing_shared)
         o.weak = weak_scaling(scene, o, o.sent[o.sent.size() / 2], static_cast<int>(o.sent.size()), f.particles ? f.count : 0);
     return o;
@@ -243,8 +271,9 @@ std::string parallel_estimate_text(const ParallelEstimate& o, const CostEstimate
         s += fmt::format("  a rank between two others sends {} messages, {} bytes per step, on {} ranks\n", sent.messages, sent.bytes,
                          tried);
     }
-    s += fmt::format("  counted in steps 2 and 3 of the scene on {} processes of this machine, {:.1f} iteration(s) per step\n", tried,
-                     o.iterations);
+    s += fmt::format("  counted in steps 2 and 3 of {} on {} processes of this machine, {:.1f} iteration(s) per step{}\n",
+                     o.tried.empty() ? "the scene" : "a copy with " + o.tried + " cells", tried, o.iterations,
+                     o.tried.empty() ? "" : "; bytes between neighbours are scaled to its planes");
     return o.nothing_shared ? s : s + weak_text(o, f);
 }
 
