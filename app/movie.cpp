@@ -10,6 +10,7 @@
 #include "output/image_file.hpp"
 #include "output/read_frame.hpp"
 #include "sim/registry.hpp"
+#include "sim/run_id.hpp"
 #include "validation/report/command.hpp"
 
 #include <algorithm>
@@ -161,7 +162,7 @@ std::filesystem::path run_of(const MovieArguments& arguments) {
         return named;
     }
     const auto scene = validation::scene_named(arguments.result);
-    const auto folder = std::filesystem::path("out") / scene_name(scene::read(scene, sim::schemas(), {}));
+    const auto folder = std::filesystem::path("out") / sim::scene_name(scene::read(scene, sim::schemas(), {}));
     std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string(), "run", file_argument(scene),
                                    "--out=" + folder.string()};
     for (const auto& change : arguments.set) words.push_back("--set=" + change);

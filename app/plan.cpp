@@ -63,8 +63,7 @@ void add_plan(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand(
         "plan",
         "Recommend a configuration for a budget, as a command. With --of: of any scene, from a ladder of grids, with the uncertainty of "
-        "each "
-        "value. Without: of a case, from its published study of cost. Exit code 1 if no configuration meets the request");
+        "each value. Without: of a case, from its published study of cost. Exit code 1 if no configuration meets the request");
     command->add_option("scene", scene.scene, "A scene, or a case by name or folder")->required();
     command
         ->add_option("--of", scene.of,

@@ -263,7 +263,7 @@ std::filesystem::path find_checkpoint(const std::filesystem::path& path) {
 std::filesystem::path output_folder(const RunArguments& arguments, const scene::Scene& scene) {
     if (!arguments.out.empty()) return arguments.out;
     if (!arguments.restart.empty()) return find_checkpoint(arguments.restart).parent_path();
-    return std::filesystem::path("out") / scene_name(scene);
+    return std::filesystem::path("out") / sim::scene_name(scene);
 }
 
 /// A metric may look at every step, so a run is measured whole or not at all.

@@ -45,16 +45,6 @@ scene::Scene scene_of_run(const std::filesystem::path& folder) {
     return scene::parse(text_in(file, kept, "source"), text_in(file, kept, "file"), sim::schemas(), overrides);
 }
 
-std::string scene_name(const scene::Scene& scene) {
-    const auto is_name = [](const std::string& text) { return !text.empty() && text != "." && text != ".."; };  // of a folder of its own
-    const std::filesystem::path path = std::filesystem::path(scene.file()).lexically_normal();
-    const std::string stem = is_name(path.stem().string()) ? path.stem().string() : path.filename().string();
-    std::string folder = path.parent_path().filename().string();
-    if (folder == "..") folder = std::filesystem::absolute(path).lexically_normal().parent_path().filename().string();
-    if (stem == "scene" && is_name(folder)) return folder;
-    return is_name(stem) ? stem : "scene";
-}
-
 std::size_t frame_at(const std::vector<real>& times, real time) {
     if (time < 0) return times.size() - 1;
     std::size_t frame = 0;

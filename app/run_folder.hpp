@@ -10,8 +10,6 @@ namespace weir::app {
 
 /// The scene as run.json keeps it, overrides included. Throws BadInput where the folder is not one of a run.
 scene::Scene scene_of_run(const std::filesystem::path& folder);
-/// What its run is called: "cases/plume" and "cases/plume/scene.toml" are both plume.
-std::string scene_name(const scene::Scene& scene);
 /// The last frame at or before `time` [s]; the last of all where `time` is negative.
 std::size_t frame_at(const std::vector<real>& times, real time);
 

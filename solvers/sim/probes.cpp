@@ -9,10 +9,16 @@
 
 namespace weir {
 
+std::pair<std::string_view, std::string_view> name_and_unit(std::string_view column) {
+    const auto open = column.find(" [");
+    if (open == std::string_view::npos) return {column, {}};
+    return {column.substr(0, open), column.substr(open + 2, column.size() - open - 3)};
+}
+
 std::size_t ProbeSeries::column_number(std::string_view wanted) const {
     std::string known;
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (wanted == columns[c] || wanted == std::string_view(columns[c]).substr(0, columns[c].find(" ["))) return c;
+        if (wanted == columns[c] || wanted == name_and_unit(columns[c]).first) return c;
         known += (c == 0 ? "" : ", ") + columns[c];
     }
     throw BadInput("probe \"" + name + "\" has no column \"" + std::string(wanted) + "\"; it has " + known);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace weir {
@@ -30,6 +31,9 @@ struct ProbeSeries {
     std::vector<real> column(std::string_view wanted) const { return column(column_number(wanted)); }
     std::vector<real> column(std::size_t number) const;
 };
+
+/// A column split into its name and its unit: "height [m]" into "height" and "m". The unit may be empty.
+std::pair<std::string_view, std::string_view> name_and_unit(std::string_view column);
 
 /// The probe of that name. Throws BadInput where there is none.
 const ProbeSeries& probe_named(const std::vector<ProbeSeries>& probes, std::string_view name);

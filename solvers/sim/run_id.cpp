@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string_view>
 
@@ -14,20 +15,29 @@ namespace {
 
 constexpr const char* block = "sim.run";
 
-/// FNV-1a over 64 bits.
+}  // namespace
+
 std::uint64_t digest(std::string_view text) {
     std::uint64_t hash = 0xcbf29ce484222325ull;
     for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
     return hash;
 }
 
-}  // namespace
-
 std::string run_id(const scene::Scene& scene) { return fmt::format("{:016x}", digest(scene::to_json(scene.root()))); }
 
 std::string branch_id(const scene::Scene& scene, const std::string& continued, std::int64_t steps) {
     const std::string own = run_id(scene);
     return own == continued ? own : fmt::format("{:016x}", digest(fmt::format("{} of {} after {} steps", own, continued, steps)));
+}
+
+std::string scene_name(const scene::Scene& scene) {
+    const auto is_name = [](const std::string& text) { return !text.empty() && text != "." && text != ".."; };  // of a folder of its own
+    const std::filesystem::path path = std::filesystem::path(scene.file()).lexically_normal();
+    const std::string stem = is_name(path.stem().string()) ? path.stem().string() : path.filename().string();
+    std::string folder = path.parent_path().filename().string();
+    if (folder == "..") folder = std::filesystem::absolute(path).lexically_normal().parent_path().filename().string();
+    if (stem == "scene" && is_name(folder)) return folder;
+    return is_name(stem) ? stem : "scene";
 }
 
 void put_run_id(Checkpoint& to, const std::string& run) { to.put(block, std::span<const char>(run)); }

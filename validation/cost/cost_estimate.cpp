@@ -32,7 +32,6 @@ std::pair<double, bool> count_of(const scene::Scene& scene, const FieldSet& fiel
     return {cells, false};
 }
 
-
 double median(std::vector<double> list) {
     const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
     std::nth_element(list.begin(), middle, list.end());

@@ -33,6 +33,14 @@ double computing_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+ThreadsScope::ThreadsScope(std::optional<int> count) : set_(count.has_value()) {
+    if (count) before_ = set_threads(*count > 0 ? *count : omp_get_num_procs());
+}
+
+ThreadsScope::~ThreadsScope() {
+    if (set_) set_threads(before_);
+}
+
 double others_between(const Work& from, const Work& to) {
     const double wall = to.wall - from.wall;
     return wall > 0 ? std::max(0.0, (to.machine - from.machine) - (to.ours - from.ours)) / wall : 0;

@@ -53,23 +53,6 @@ void take_device(CostPoint& point, const scene::Scene& scene) {
     point.device_kind = d.kind;
 }
 
-/// The threads that a method asks for, while it is measured.
-class OwnThreads {
-public:
-    explicit OwnThreads(std::optional<int> count) : named_(count) {
-        if (count) before_ = set_threads(*count > 0 ? *count : omp_get_num_procs());
-    }
-    ~OwnThreads() {
-        if (named_) set_threads(before_);
-    }
-    OwnThreads(const OwnThreads&) = delete;
-    OwnThreads& operator=(const OwnThreads&) = delete;
-
-private:
-    std::optional<int> named_;
-    int before_ = 0;
-};
-
 bool wants_more(const MeasureOptions& options, int done, double spent) {
     if (done == 0) return true;
     if (done < options.repeats) return spent < options.enough_seconds;
@@ -78,7 +61,7 @@ bool wants_more(const MeasureOptions& options, int done, double spent) {
 
 CostPoint measure_point(const Study& study, const Variant& method, std::size_t i, const MeasureOptions& options, const Solvers& solvers,
                         StudyResult& result) {
-    const OwnThreads own(method.threads);
+    const ThreadsScope own(method.threads);
     const sim::NoThreadTrials no_trials;
     CostPoint point{.method = method.name, .threads = threads()};
     if (method.sweep) point.setting = fmt::format("{:g}", method.sweep->values[i]);

@@ -72,6 +72,12 @@ Band band(const std::vector<GridValue>& grids, real formal_order) {
     return result;
 }
 
+std::vector<real> error_bounds(const std::vector<GridValue>& grids, real width) {
+    std::vector<real> bounds;
+    for (const GridValue& g : grids) bounds.push_back(distance(g.value, grids.back().value) + width);
+    return bounds;
+}
+
 real formal_order(std::string_view solver, std::string_view advection) {
     if (solver == "mac" || solver == "transport") return advection == "semi_lagrangian" ? 1 : 2;
     if (solver == "waves" || solver == "poisson") return 2;

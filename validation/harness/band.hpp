@@ -45,6 +45,9 @@ real observed_order(real a, real b, real h1, real h2, real h3);
 /// count. Throws BadInput for fewer.
 Band band(const std::vector<GridValue>& grids, real formal_order);
 
+/// Bounds of the errors of all grids: the distance to the finest, and its width.
+std::vector<real> error_bounds(const std::vector<GridValue>& grids, real width);
+
 /// The formal order of a solver's results: of mac 2 (1 with semi-Lagrangian advection), of waves 2, of height fields 3/2 (limiters,
 /// shores), of free surfaces and particles 1.
 real formal_order(std::string_view solver, std::string_view advection);

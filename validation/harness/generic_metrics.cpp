@@ -152,9 +152,7 @@ std::string unit_of_probe(std::string_view name, const RunRecord& run) {
     name.remove_prefix(6);
     const auto dot = std::min(name.find('.'), name.size());
     const ProbeSeries& probe = run.probe(name.substr(0, dot));
-    const std::string& column = probe.columns.at(dot == name.size() ? 0 : probe.column_number(name.substr(dot + 1)));
-    const auto open = column.find(" [");
-    return open == std::string::npos ? "" : column.substr(open + 2, column.size() - open - 3);
+    return std::string(name_and_unit(probe.columns.at(dot == name.size() ? 0 : probe.column_number(name.substr(dot + 1)))).second);
 }
 
 real largest(const RunRecord& run, std::string_view field) {

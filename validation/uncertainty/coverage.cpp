@@ -14,12 +14,9 @@ constexpr real negligible = 1e-12;  // of the size of a quantity
 /// The coarsest of the first `count` grids whose bound, and that of all finer ones, is at most `wish`.
 std::optional<std::size_t> recommended(const KnownQuantity& q, std::size_t count, real wish) {
     const std::vector<GridValue> run(q.values.begin(), q.values.begin() + static_cast<std::ptrdiff_t>(count));
-    const real width = band(run, q.formal_order).width;
+    const auto bounds = error_bounds(run, band(run, q.formal_order).width);
     std::optional<std::size_t> coarsest;
-    for (std::size_t k = count; k-- > 0;) {
-        if (!(distance(run[k].value, run.back().value) + width <= wish)) break;
-        coarsest = k;
-    }
+    for (std::size_t k = count; k-- > 0 && bounds[k] <= wish;) coarsest = k;
     return coarsest;
 }
 

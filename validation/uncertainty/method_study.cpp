@@ -139,6 +139,7 @@ void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std
            const Limits& limits, RunStore& store, const Tell& tell) {
     const int least = ladder.coarsest(study.left_out), own = std::max(ladder.own(), least);
     climber.add(first_number(ladder, least, own, limits.rungs));
+    assess(study, asked, wishes);
     if (study.grids.front().run.failure) return;
     climber.add(next_number(study.grids.front().grid.number, own));
     assess(study, asked, wishes);
@@ -197,7 +198,7 @@ void assess(MethodStudy& study, const std::vector<Asked>& asked, const std::vect
         quantity.band = band(values, study.method.formal_order);
         quantity.finer = study.grids.back().grid.h / study.grids.front().grid.h;
         quantity.width = quantity.band->width + quantity.finer * (quantity.step + quantity.seeds);
-        for (const GridValue& v : values) quantity.error.push_back(distance(v.value, values.back().value) + quantity.width);
+        quantity.error = error_bounds(values, quantity.width);
         const real scale = quantity.finest().scale;
         const bool absolute_wish = q < wishes.size() && !wishes[q].relative;
         if (!absolute_wish && scale > 0 && quantity.width > widest_band * scale)

@@ -127,7 +127,7 @@ std::string finer_text(const ScenePlan& plan) {
     std::string s;
     for (const PlannedMethod& m : plan.methods) {
         const MethodStudy& study = m.study;
-        if (m.other_equations() || study.next <= study.grids.back().grid.number || study.quantities.empty()) continue;
+        if (m.other_equations() || study.grids.empty() || study.next <= study.grids.back().grid.number) continue;
         const double finer = static_cast<double>(study.next) / study.grids.back().grid.number;
         if (finer >= farthest) {
             s += fmt::format("{} would need more than {:g} times as many cells per axis\n", study.method.name, farthest);

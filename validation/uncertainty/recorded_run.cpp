@@ -21,25 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-/// One thread: its computing time does not depend on what other programs do.
-class OneThread {
-public:
-    OneThread() : before_(set_threads(1)) {}
-    ~OneThread() { set_threads(before_); }
-    OneThread(const OneThread&) = delete;
-    OneThread& operator=(const OneThread&) = delete;
-
-private:
-    int before_;
-};
-
-/// "height [m]" into "height" and "m".
-std::pair<std::string, std::string> name_and_unit(const std::string& column) {
-    const auto open = column.find(" [");
-    if (open == std::string::npos) return {column, ""};
-    return {column.substr(0, open), column.substr(open + 2, column.size() - open - 3)};
-}
-
 /// Pressures and forces are results of a step: before the first one has ended they are zero, or on their way from zero.
 void drop_before_first_step(RecordedSeries& series, real first_dt) {
     if (!series.unit.starts_with("Pa") && !series.unit.starts_with("N")) return;
@@ -54,7 +35,10 @@ std::vector<RecordedSeries> series_of(const RunRecord& record) {
     for (const ProbeSeries& probe : record.probes)
         for (std::size_t c = 0; c < probe.columns.size(); ++c) {
             const auto [name, unit] = name_and_unit(probe.columns[c]);
-            all.push_back({.name = probe.name + "." + name, .unit = unit, .integral = probe.kind == "integral", .curve = column(probe, c)});
+            all.push_back({.name = fmt::format("{}.{}", probe.name, name),
+                           .unit = std::string(unit),
+                           .integral = probe.kind == "integral",
+                           .curve = column(probe, c)});
         }
     for (const Integral& i : record.integrals) all.push_back({i.name, i.unit, true, record.series(i.name)});
     if (record.history.size() > 1)
@@ -100,7 +84,7 @@ std::vector<const Metric*> registered(const std::vector<std::string>& metrics) {
 double RecordedRun::seconds_per_frame(double frame) const { return std::max(1e-3 * ms_per_step, seconds_per_second * frame); }
 
 RecordedRun record_run(const scene::Scene& scene, const std::vector<std::string>& metrics, double time_limit, const Solvers& solvers) {
-    const OneThread one_thread;
+    const ThreadsScope one_thread(1);  // its computing time does not depend on what other programs do
     RecordedRun run;
     for (const double n : scene.root().numbers("grid.cells")) run.cells.push_back(static_cast<int>(n));
     try {
@@ -129,7 +113,7 @@ std::vector<RecordedSeries> series_at_start(const scene::Scene& scene, const Sol
     for (const ProbeSeries& probe : simulation.probes())
         for (const std::string& column : probe.columns) {
             const auto [name, unit] = name_and_unit(column);
-            all.push_back({.name = probe.name + "." + name, .unit = unit});
+            all.push_back({.name = fmt::format("{}.{}", probe.name, name), .unit = std::string(unit)});
         }
     for (const Integral& i : simulation.integrals()) all.push_back({i.name, i.unit, true, {}});
     return all;

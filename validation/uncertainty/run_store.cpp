@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
+#include "sim/run_id.hpp"
 
 #include <fmt/format.h>
 
@@ -17,13 +18,6 @@
 
 namespace weir::validation {
 namespace {
-
-/// FNV-1a (Fowler, Noll & Vo), 64 bits.
-std::uint64_t hash(const std::string& text) {
-    std::uint64_t value = 14695981039346656037ULL;
-    for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-    return value;
-}
 
 /// When the program was built: the executable, or the module of Python that holds this function.
 std::int64_t time_of_program() {
@@ -45,7 +39,8 @@ std::string files_of(const scene::Scene& scene, const std::string& text) {
         std::error_code none;
         if (close == open + 1 || !std::filesystem::is_regular_file(file, none)) continue;
         std::ifstream content(file, std::ios::binary);
-        hashes += fmt::format("{} {:016x}\n", file.filename().string(), hash({std::istreambuf_iterator<char>(content), {}}));
+        hashes +=
+            fmt::format("{} {:016x}\n", file.filename().string(), sim::digest(std::string{std::istreambuf_iterator<char>(content), {}}));
     }
     return hashes;
 }
@@ -64,7 +59,7 @@ std::string key_of(const scene::Scene& scene) {
 }
 
 /// A kept run: a line with the checksum of its scene and of its text, then the text.
-std::string checksum_line(const std::string& key, const std::string& text) { return fmt::format("{:016x}\n", hash(key + text)); }
+std::string checksum_line(const std::string& key, const std::string& text) { return fmt::format("{:016x}\n", sim::digest(key + text)); }
 
 /// The run in this file. Throws BadInput where it is damaged, or of another scene.
 RecordedRun kept_run(std::istream& file, const std::string& key) {
@@ -85,12 +80,7 @@ bool has_metrics(const RecordedRun& run, const std::vector<std::string>& metrics
 RunStore::RunStore(std::filesystem::path folder, std::vector<std::string> metrics, double time_limit, const Solvers& solvers)
     : folder_(std::move(folder)), metrics_(std::move(metrics)), time_limit_(time_limit), solvers_(&solvers) {}
 
-std::filesystem::path RunStore::file_of(const std::string& key) const { return folder_ / fmt::format("{:016x}.run", hash(key)); }
-
-bool RunStore::has(const scene::Scene& scene) const {
-    const std::string key = key_of(scene);
-    return runs_.count(key) > 0 || (!folder_.empty() && std::filesystem::exists(file_of(key)));
-}
+std::filesystem::path RunStore::file_of(const std::string& key) const { return folder_ / fmt::format("{:016x}.run", sim::digest(key)); }
 
 const RecordedRun& RunStore::run(const scene::Scene& scene) {
     const std::string key = key_of(scene);

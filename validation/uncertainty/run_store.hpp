@@ -13,8 +13,6 @@ public:
 
     /// The run of this scene. A kept run of another program, or without the metrics, is made again.
     const RecordedRun& run(const scene::Scene& scene);
-    /// Returns whether run() would read it.
-    bool has(const scene::Scene& scene) const;
     /// Computing time of the runs made, not read [s].
     double seconds() const { return seconds_; }
 

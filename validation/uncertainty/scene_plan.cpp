@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/folder_lock.hpp"
+#include "sim/run_id.hpp"
 #include "validation/cost/load.hpp"
 #include "validation/cost/plan.hpp"
 #include "validation/cost/recommend.hpp"
@@ -19,13 +20,6 @@
 
 namespace weir::validation {
 namespace {
-
-/// "cases/plume/scene.toml" and "cases/plume" are plume.
-std::string name_of(const std::filesystem::path& file) {
-    const auto whole = std::filesystem::weakly_canonical(std::filesystem::is_directory(file) ? file / "scene.toml" : file);
-    const auto stem = whole.stem().string();
-    return stem == "scene" ? whole.parent_path().filename().string() : stem;
-}
 
 std::vector<std::string> words(const std::string& list) {
     std::vector<std::string> all;
@@ -125,8 +119,8 @@ bool comparable(const PlannedMethod& m) { return m.study.solver_fails.empty() &&
 
 ScenePlan plan_scene(const ScenePlanOptions& options, const Solvers& solvers, const Tell& tell) {
     ScenePlan plan{.file = scene_named(options.scene), .set = options.set};
-    plan.name = name_of(plan.file);
     const scene::Scene scene = scene::read(plan.file, scene::schemas_of(solvers), options.set);
+    plan.name = sim::scene_name(scene);
     const std::vector<Method> methods = methods_of(scene, options.with, solvers);
     if (!options.of.empty()) plan.asked = parse_asked(options.of);
     const auto series = series_of(scene, methods.front(), solvers);
@@ -172,17 +166,16 @@ std::optional<Recommended> recommended(const ScenePlan& plan) {
     for (std::size_t m = 0; m < plan.methods.size(); ++m) {
         const MethodStudy& study = plan.methods[m].study;
         if (plan.methods[m].other_equations() || study.quantities.empty()) continue;
-        bool finer_meet = true;
-        for (std::size_t g = study.grids.size(); g-- > 0 && finer_meet;) {
-            real error = 0;  // largest of the quantities, over the wish or over the scale
+        for (std::size_t g = study.grids.size(); g-- > 0;) {  // from fine to coarse, as long as all finer grids meet the wishes
+            real error = 0;                                   // largest of the quantities, over the wish or over the scale
             for (std::size_t q = 0; q < study.quantities.size(); ++q) {
                 const QuantityStudy& quantity = study.quantities[q];
                 const bool known = quantity.refused.empty() && g < quantity.error.size();
                 const real to = plan.wishes.empty() ? quantity.finest().scale : absolute(plan.wishes[q], quantity.finest());
                 error = std::max(error, known ? quantity.error[g] / (to > 0 ? to : 1) : infinity);
             }
-            finer_meet = plan.wishes.empty() ? error < infinity : error <= 1;
-            if (!finer_meet) break;
+            const bool meets = plan.wishes.empty() ? error < infinity : error <= 1;
+            if (!meets) break;
             const Recommended choice{m, g, study.seconds_per_frame(g, plan.limits.frame)};
             if (choice.seconds > plan.limits.budget || !study.grids[g].run.balanced) continue;
             const bool better = !best || (plan.wishes.empty() ? error < best_error : choice.seconds < best->seconds);

@@ -6,6 +6,7 @@
 #include "sim/simulation.hpp"
 #include "support/test.hpp"
 #include "validation/cost/effect_scene.hpp"
+#include "validation/cost/parallel_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +85,25 @@ TEST("passes are estimated by name, and together are the step") {
     for (const char* name : {"effect buoyancy", "effect confinement", "advect fields", "advect velocity", "project"})
         EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
     EXPECT_EQ(f.measured.size(), 2u);
+}
+
+TEST("messages of a large scene are counted on a copy, and bytes between neighbours are those of its planes") {
+    const auto scene = scene::parse(
+        "solver = \"mac\"\ndim = 2\ngrid = { cells = [2560, 1920], size = [4.0, 3.0] }\ntime = { end = 1.0 }\ninitial.velocity = "
+        "\"random\"\n",
+        "scene.toml", sim::schemas());
+    const CostEstimate f = estimate_cost(scene);
+    ASSERT_GT(f.held.cells, 4 * most_cells_tried);
+    const ParallelEstimate o = estimate_in_parallel(scene, f, 2, Link{1e-6, 1e10, "given"});
+    EXPECT_NE(o.tried, "");
+    EXPECT_NE(parallel_estimate_text(o, f, scene).find("a copy with " + o.tried + " cells"), std::string::npos);
+    // Planes have sqrt(4.9) = 2.2 times the cells of the copy's. The copy has one level less, and each level has half the bytes of the
+    // finer.
+    const CountedSteps whole = count_messages(scene, 2, 1, 1);
+    const auto bytes_per_iteration = [](const RankTraffic& sent, double iterations) {
+        return static_cast<double>(sent.beside.bytes) / iterations;
+    };
+    EXPECT_NEAR(bytes_per_iteration(o.sent[0], o.iterations) / bytes_per_iteration(whole.sent[0], whole.iterations), 1, 0.25);
 }
 
 }  // namespace weir::validation

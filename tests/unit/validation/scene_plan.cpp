@@ -144,6 +144,19 @@ TEST("a curve has values at all its times: the last one is not after the end by 
     }
 }
 
+TEST("a plan of which methods fail, on any grid, is printed") {
+    MethodStudy fails{.method = {.name = "waves", .solver = "waves"}, .solver_fails = "no waves"};
+    MethodStudy first = study_of({1.4});
+    first.grids[0].run.failure = "not finished after 1 s of computing";
+    ScenePlan plan = plan_of({study_of({1.8, 1.4, 1.2}), first}, "0.1%");
+    plan.methods.push_back({.study = fails});
+    const std::string text = plan_text(plan);
+    EXPECT_NE(text.find("waves: no waves"), std::string::npos) << text;
+    EXPECT_NE(text.find("not finished after 1 s"), std::string::npos) << text;
+    EXPECT_NE(text.find("no configuration of the ladder meets this"), std::string::npos) << text;
+    EXPECT_NO_THROW(plan_json(plan));
+}
+
 TEST("wishes are parts of a scale or have a unit") {
     const Value height{.samples = {0.4}, .unit = "m", .scale = 0.1};
     EXPECT_NEAR(absolute(parse_wish("5%"), height), 0.005, 1e-15);
