@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace verdict_tests {
+
 using namespace weir;
 using namespace weir::validation;
 using Test = Criterion::Test;
@@ -137,3 +139,5 @@ TEST("a series that rises once fails never_increases, by how much it rose") {
     r.series["velocity.l2"] = falling;
     EXPECT_TRUE(judged(claim(Test::never_increases, -inf, 1e-12), {r}).pass);
 }
+
+}  // namespace verdict_tests
