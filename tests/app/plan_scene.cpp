@@ -98,6 +98,12 @@ TEST("the printed command runs, and its probe has the promised value") {
     const double highest = largest_height(desk.path() / "followed/probes/right.csv");
     EXPECT_NEAR(highest, promised(answer), printed * promised(answer));
     EXPECT_TRUE(fs::exists(desk.plan() / "plan.svg"));
+    EXPECT_NE(desk.said.find("\npage: out/sloshing/plan/index.html\n"), std::string::npos) << desk.said;
+    const std::string page = text_of(desk.plan() / "index.html");
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_NE(page.find("--error 5%</code>"), std::string::npos) << "the page repeats the question";
+    EXPECT_EQ(desk.run(question + "--error 1um --budget 0.5ms"), 1) << desk.said;
+    EXPECT_NE(text_of(desk.plan() / "index.html").find("No configuration of the ladder meets the request"), std::string::npos);
 }
 
 TEST("a second question is answered from kept runs") {
