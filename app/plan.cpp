@@ -83,7 +83,7 @@ void add_plan(CLI::App& app, int& exit_code) {
     command->add_option("--frame", scene.frame, "Simulated time per frame (default: a sixtieth of a second)");
     command->add_option("--with", scene.with,
                         "With --of: compare with other methods, such as tallcell,shallow_water,pbf or mac_water:scheme.transfer=apic");
-    command->add_option("--time-limit", scene.time_limit, "With --of: computing time of one run at most (default: 60s)");
+    command->add_option("--time-limit", scene.time_limit, "With --of: computing time of one run at most (default: 120s)");
     command->add_option("--set", arguments->set, "With --of: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
     command->add_option("--out", scene.out,
                         "With --of: folder of plan.json, plan.svg, index.html and the kept runs (default: out/NAME/plan)");
