@@ -28,7 +28,7 @@ std::string list(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) s += item(line);
     return s.empty() ? s : "<ul class=\"advice\">" + s + "</ul>\n";
 }
-Cell note(std::string_view text) { return raw(text.empty() ? "" : "<span class=\"theory\">" + lines_of_html(text) + "</span>"); }
+Cell note(std::string_view text) { return raw(lines_of_html(text)); }
 Cell verdict(std::string_view text) { return raw("<span class=\"bound\">" + escaped(text) + "</span>"); }
 /// A number with its unit; it sorts by `key`. "–" where the text is empty.
 Cell number(const std::string& text, double key) {

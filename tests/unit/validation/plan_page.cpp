@@ -66,7 +66,7 @@ TEST("the page of a plan has a row per configuration, the recommendation and the
     expect_in(page, "<code>" + run_line(plan, *plan.take) + "</code>");
     expect_in(page, "<code>weir plan tank.toml</code>");
     plan.methods.push_back({.study = {.method = {.name = "waves"}, .solver_fails = "no waves\nat line 1"}});
-    expect_in(plan_page(plan, ""), ">cannot run</span></td><td class=\"n\">–</td><td><span class=\"theory\">no waves</span></td>");
+    expect_in(plan_page(plan, ""), ">cannot run</span></td><td class=\"n\">–</td><td>no waves</td>");
 }
 
 TEST("a refused plan has its reason on the page, and no command that runs it") {
