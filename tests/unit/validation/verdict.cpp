@@ -70,7 +70,7 @@ TEST("an ensemble agrees with experiments within twice the validation uncertaint
     EXPECT_NEAR(close.measured, 0.5, 1e-12);
     EXPECT_NEAR(close.high, 2 * std::sqrt(9.0 + 4.0 + 1.0) / 10, 1e-9);
     EXPECT_TRUE(close.pass);
-    EXPECT_NE(close.note.find("a model error above 75% would be told apart"), std::string::npos) << close.note;
+    EXPECT_NE(close.note.find("a model error above 74.8% would be told apart"), std::string::npos) << close.note;
     c.experiment->power = 0.7;
     EXPECT_FALSE(judged_with(15 - two, 15 + two, {grids}).pass);  // it could not tell 70% apart
     c.experiment->power = 1;
