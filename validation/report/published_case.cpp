@@ -14,10 +14,11 @@ namespace {
 
 using nlohmann::json;
 
-/// A claim as the page shows it: what is claimed, and its bound.
+/// A claim as the page shows it: what is claimed, and its bound; that of agrees_with is measured with it.
 std::string claim_text(const std::string& variant, const std::string& metric, const std::string& test, const std::string& bound,
                        bool open) {
-    return fmt::format("{}{}{} {} {}{}", variant, variant.empty() ? "" : ": ", metric, test, bound, open ? " (asked)" : "");
+    const std::string shown = test == name(Criterion::Test::agrees_with) ? "twice the validation uncertainty" : bound;
+    return fmt::format("{}{}{} {} {}{}", variant, variant.empty() ? "" : ": ", metric, test, shown, open ? " (asked)" : "");
 }
 
 std::multiset<std::string> claims_of(const Case& full) {
