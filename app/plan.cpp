@@ -83,9 +83,10 @@ void add_plan(CLI::App& app, int& exit_code) {
     command->add_option("--frame", scene.frame, "Simulated time per frame (default: a sixtieth of a second)");
     command->add_option("--with", scene.with,
                         "With --of: compare with other methods, such as tallcell,shallow_water,pbf or mac_water:scheme.transfer=apic");
-    command->add_option("--time-limit", scene.time_limit, "With --of: computing time of one run at most (default: 60s)");
+    command->add_option("--time-limit", scene.time_limit, "With --of: computing time of one run at most (default: 120s)");
     command->add_option("--set", arguments->set, "With --of: override a key")->type_name("KEY=VALUE")->allow_extra_args(false);
-    command->add_option("--out", scene.out, "With --of: folder of plan.json, plan.svg and the kept runs (default: out/NAME/plan)");
+    command->add_option("--out", scene.out,
+                        "With --of: folder of plan.json, plan.svg, index.html and the kept runs (default: out/NAME/plan)");
     command->add_option("--tables", arguments->study.tables, "Folder of the tables (default: results/cost here, or as installed)");
     command->add_flag("--as-measured", arguments->study.as_measured,
                       "Use the published times unscaled, without measuring some of them again on this machine");

@@ -123,8 +123,8 @@ def plan(case: "str | os.PathLike | dict", error: "str | float | Sequence" = "",
     frame       simulated time per frame; a sixtieth of a second if empty
     with_       further methods, such as ["tallcell", "shallow_water"]
     set         changes of keys, as of Simulation
-    out         folder of plan.json, plan.svg and the kept runs; without it nothing is kept, and a second call runs everything again
-    time_limit  computing time of one run at most; 60 s if empty
+    out         folder of plan.json, plan.svg, index.html and the kept runs; without it nothing is kept, and a second call runs everything again
+    time_limit  computing time of one run at most; 120 s if empty
     progress    progress(text) before each run; what it raises ends the plan
 
     Raises BadInput where the scene is wrong, a quantity is unknown, another plan uses `out`, or an option does not fit.

@@ -13,7 +13,7 @@ using scene::Key;
 using scene::Type;
 
 const EffectKinds& body_forces() {
-    static const EffectKinds kinds{gravity()};
+    static const EffectKinds kinds{gravity(), rotating_frame()};
     return kinds;
 }
 

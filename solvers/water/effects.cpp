@@ -8,7 +8,7 @@ namespace weir::water {
 using scene::Type;
 
 const EffectKinds& body_forces() {
-    static const EffectKinds kinds{gravity()};
+    static const EffectKinds kinds{gravity(), rotating_frame()};
     return kinds;
 }
 

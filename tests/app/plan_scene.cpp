@@ -92,12 +92,18 @@ TEST("the printed command runs, and its probe has the promised value") {
     ASSERT_EQ(desk.run(question + "--error 5%"), 0) << desk.said;
     const std::string line = desk.line_that_begins("weir run ");
     ASSERT_NE(line, "") << desk.said;
+    EXPECT_EQ(desk.line_that_begins("page: "), "page: out/sloshing/plan/index.html");
     const json answer = desk.answer();
     EXPECT_EQ(answer.at("take").at("command"), line);
     ASSERT_EQ(desk.run(line + " --out followed"), 0) << desk.said;
     const double highest = largest_height(desk.path() / "followed/probes/right.csv");
     EXPECT_NEAR(highest, promised(answer), printed * promised(answer));
     EXPECT_TRUE(fs::exists(desk.plan() / "plan.svg"));
+    const std::string page = text_of(desk.plan() / "index.html");
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_NE(page.find("--error 5%</code>"), std::string::npos) << "the page repeats the question";
+    EXPECT_EQ(desk.run(question + "--error 1um --budget 0.5ms"), 1) << desk.said;
+    EXPECT_NE(text_of(desk.plan() / "index.html").find("No configuration of the ladder meets the request"), std::string::npos);
 }
 
 TEST("a second question is answered from kept runs") {

@@ -248,6 +248,10 @@ water_schemes)
     compare ring_viscous "2 1,4 1" "$water_deep" $water_ring $even $viscous --set effects.viscosity.scheme=implicit
     compare whole_viscous "3 1" "$water_deep" $viscous --set scheme.poisson.method=cg_mic0
     holds_whole whole_viscous-3
+    # a tank that rolls, also about axes that turn one rank's planes into another's
+    for axis in x y z; do
+        compare rolling_$axis "3 1" "$water_deep" --set emitters=[] --set "effects.rotating_frame={centre=[0.3,0.1,0.2],axis=\"$axis\",amplitude=0.3,period=0.4}"
+    done
     compare flat_cells "2 2,3 1,4 1" "$water_deep" --set grid.cells=[28,40,26]
     holds_own flat_cells-3
     compare flat_ring "3 1" "$water_deep" $water_ring $viscous --set grid.cells=[28,30,32]

@@ -31,6 +31,8 @@ const std::vector<std::string> of_the_run{
 const std::string hand =
     "effects.hand = { rate = 10, keyframes = [ { time = 0, kind = \"push\", centre = [0.5, 0.5], radius = 0.1, velocity = [1, 0], speed = "
     "0, temperature = 300, body = 0 } ] }";
+const std::string rolls =
+    "effects.rotating_frame = { centre = [0, 0], axis = \"z\", amplitude = 0.1, period = 1, phase = 0.1, ramp = 0.1, rate = 0.1 }";
 /// With `field` as one that the solver has.
 std::vector<std::string> probes(const std::string& field) {
     const std::string of = ", field = \"" + field + "\"";
@@ -146,6 +148,7 @@ std::map<std::string, Said> everything() {
                           "effects.central_force = { omega = 1, centre = [0, 0] }",
                           "effects.xsph.c = 0.1",
                           "effects.vorticity.epsilon = 0.1",
+                          rolls,
                           hand};
     const Lines liquid{"liquid = [ { shape = \"box\", min = [0, 0], max = [0.5, 0.5] } ]"};
     const Lines refused_by_particles{inflow + " } }", "output.fields = [\"vorticity\"]"};
@@ -172,8 +175,8 @@ std::map<std::string, Said> everything() {
         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, bodies, joints, poisson, grid_velocities, walls,
             open_sides, Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]"},
             Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }", hand,
-                  "effects.volume_control = {}", "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4", "time.stop_when_steady = 0.1",
-                  "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
+                  "effects.volume_control = {}", rolls, "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4",
+                  "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
                   "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"}),
         endless_bodies, all(of_surfaces, Lines{of_level_set, wet_mesh})};
     said["tallcell"] = {liquid,
@@ -182,7 +185,7 @@ std::map<std::string, Said> everything() {
                                   "time.cfl = 0.4", "liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]",
                                   "scheme.poisson = { tolerance = 1e-6, max_iterations = 100, fixed = false }",
                                   "scheme = { columns = \"single\", layers = 9, advection = \"semi_lagrangian\" }",
-                                  "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]", hand}),
+                                  "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]", rolls, hand}),
                         {inflow + " } }", walls[1], open_sides[0], "grid.periodic = [\"y\"]"},
                         {of_level_set}};
     const Lines flows{"flow = { name = \"constant\", value = [1, 0] }", "flow = { name = \"rotation\", centre = [0, 0], rate = 1 }",

@@ -207,7 +207,10 @@ private:
     }
 
     Value number(const Key& key, double x, const Around& around) {
-        const bool turning = key.name == "angle" || ((key.name == "rate" || key.name == "omega") && around.variant == "rotation");
+        const bool rolling = around.key == "rotating_frame" && (key.name == "rate" || key.name == "amplitude");
+        const bool turning =
+            rolling || key.name == "angle" || ((key.name == "rate" || key.name == "omega") && around.variant == "rotation");
+        if (rolling && dim_ == 3 && by_.turns()) no("the axis of a rotating frame is named");
         if (turning && dim_ == 2) x *= by_.handedness();
         if (around.variant == "strain" && key.name == "rate" && by_.axis[0] == 1) x = -x;
         if (around.variant == "taylor_green" && key.name == "speed" && by_.axis[0] == 1) x = -x;

@@ -1,5 +1,6 @@
 // Tests named by sentences: TEST("what is true") { ... } and TEST_IN_2D_AND_3D("...") { uses D }. The suite is the name of
-// the file that is compiled, also for bodies in a header that several such files share.
+// the file that is compiled, also for bodies in a header that several such files share; where files are compiled together, that of the
+// file.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -32,20 +33,25 @@ inline int add(const char* file, int line, const std::string& sentence, void (*b
 
 }  // namespace weir::test
 
+#ifdef WEIR_TESTS_JOINED
+#define WEIR_TEST_FILE __FILE__
+#else
+#define WEIR_TEST_FILE __BASE_FILE__
+#endif
 #define WEIR_JOIN_(a, b) a##b
 #define WEIR_JOIN(a, b) WEIR_JOIN_(a, b)
 
-#define TEST(sentence)                                                                             \
-    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                            \
-    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                      \
-        weir::test::add(__BASE_FILE__, __LINE__, sentence, &WEIR_JOIN(weir_test_body_, __LINE__)); \
+#define TEST(sentence)                                                                              \
+    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                             \
+    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                       \
+        weir::test::add(WEIR_TEST_FILE, __LINE__, sentence, &WEIR_JOIN(weir_test_body_, __LINE__)); \
     static void WEIR_JOIN(weir_test_body_, __LINE__)()
 
-#define TEST_IN_2D_AND_3D(sentence)                                                                                              \
-    template <int D>                                                                                                             \
-    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                                                          \
-    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                                                    \
-        weir::test::add(__BASE_FILE__, __LINE__, std::string(sentence) + " [2D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 2 >) + \
-        weir::test::add(__BASE_FILE__, __LINE__, std::string(sentence) + " [3D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 3 >);  \
-    template <int D>                                                                                                             \
+#define TEST_IN_2D_AND_3D(sentence)                                                                                               \
+    template <int D>                                                                                                              \
+    static void WEIR_JOIN(weir_test_body_, __LINE__)();                                                                           \
+    [[maybe_unused]] static const int WEIR_JOIN(weir_test_entry_, __LINE__) =                                                     \
+        weir::test::add(WEIR_TEST_FILE, __LINE__, std::string(sentence) + " [2D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 2 >) + \
+        weir::test::add(WEIR_TEST_FILE, __LINE__, std::string(sentence) + " [3D]", &WEIR_JOIN(weir_test_body_, __LINE__) < 3 >);  \
+    template <int D>                                                                                                              \
     static void WEIR_JOIN(weir_test_body_, __LINE__)()

@@ -1,6 +1,7 @@
 // Reads case.toml: checked against case_keys(), then as a whole, then resolved for one size.
 #include "validation/harness/case.hpp"
 
+#include "scene/names.hpp"
 #include "validation/harness/variants.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +16,8 @@ namespace {
 using scene::Table;
 
 constexpr std::array<std::string_view, 4> kinds = {"exact", "convergence", "benchmark", "iterations"};
-constexpr std::array<std::string_view, 9> tests = {"at_most",      "at_least",    "within",          "equals",         "order_at_least",
-                                                   "order_within", "gci_at_most", "never_increases", "never_decreases"};
+constexpr std::array<std::string_view, 10> tests = {"at_most",      "at_least",    "within",          "equals",          "order_at_least",
+                                                    "order_within", "gci_at_most", "never_increases", "never_decreases", "agrees_with"};
 constexpr real round_off_slack = 1e-12;  // relative; what 1e4 additions of doubles may leave
 
 /// Reads one file; collects what the schema alone cannot see.
@@ -34,6 +35,7 @@ public:
         for (const Variant& v : variants_.read(root, "variants", [this](Variant&to, const Table&t) { add_claims(to, t); })) {
             if (v.accept.empty()) continue;
             check(v, c.kind);
+            check_experiments(c.variants, v);
             c.variants.push_back(v);
         }
         if (claims_ == 0) problem(root.place("kind"), "the case makes no claim: add an [[accept]] entry to it or its variants");
@@ -99,8 +101,32 @@ private:
                 if (!t.flag(key)) problem(t.place(key), fmt::format("\"{} = false\" makes no claim", key));
                 c.high = t.number_or("slack", round_off_slack);
                 break;
+            case Test::agrees_with:
+                c.experiment = read_experiment(t.table(key));
+                break;
         }
         c.formal_order = t.number_or("formal_order", std::nan(""));
+    }
+
+    static Experiment read_experiment(const Table& t) {
+        Experiment e{.mean = t.number("mean"), .deviation = t.number("deviation"), .samples = static_cast<int>(t.integer("samples"))};
+        if (t.has("median")) e.median = t.number("median");
+        e.power = t.number("power");
+        if (t.has("grids")) e.grids = t.text("grids");
+        return e;
+    }
+
+    /// The variants whose grids give an uncertainty come before those that use it, and measure what they compare.
+    void check_experiments(std::vector<Variant>& before, const Variant& v) {
+        for (const Criterion& c : v.accept) {
+            if (!c.experiment) continue;
+            if (v.runs() < 2) problem(c.place, "an ensemble needs a sweep of at least two values");
+            const auto grids = std::find_if(before.begin(), before.end(), [&](const Variant& b) { return b.name == c.experiment->grids; });
+            if (grids != before.end())
+                grids->measured_too.push_back(c.metric);
+            else if (!c.experiment->grids.empty())
+                problem(c.place, fmt::format("grids = {} is no variant before this one", scene::quote(c.experiment->grids)));
+        }
     }
 
     /// What kind and claims need of the variant's sweep.

@@ -3,6 +3,7 @@
 #pragma once
 #include "core/types.hpp"
 #include "scene/scene.hpp"
+#include "validation/harness/experiment.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -22,13 +23,25 @@ std::string_view name(Kind kind);
 
 /// One claim: a metric, what it must be, and the reason for the bound.
 struct Criterion {
-    enum class Test { at_most, at_least, within, equals, order_at_least, order_within, gci_at_most, never_increases, never_decreases };
+    enum class Test {
+        at_most,
+        at_least,
+        within,
+        equals,
+        order_at_least,
+        order_within,
+        gci_at_most,
+        never_increases,
+        never_decreases,
+        agrees_with
+    };
     std::string metric{};
     Test test = Test::at_most;
-    real low = -infinity, high = infinity;  // the bound as an interval; for never_*: high is the slack, relative to the largest value
-    std::optional<real> at{};               // the sweep value that it speaks of; absent: the last
-    bool every = false;                     // the worst over the sweep
-    real formal_order = std::nan("");       // for gci_at_most on two grids
+    real low = -infinity, high = infinity;   // the bound as an interval; for never_*: high is the slack, relative to the largest value
+    std::optional<real> at{};                // the sweep value that it speaks of; absent: the last
+    bool every = false;                      // the worst over the sweep
+    real formal_order = std::nan("");        // for gci_at_most on two grids
+    std::optional<Experiment> experiment{};  // for agrees_with: all runs of the sweep are the ensemble
     std::string why{};
     std::string not_reached{};  // why an open target is not met; empty: the bound is a claim
     scene::Place place{};       // of its metric in case.toml
@@ -60,8 +73,9 @@ struct Variant {
     std::vector<scene::Override> overrides{};
     std::optional<Sweep> sweep{};
     std::vector<Criterion> accept{};
-    real time_limit = infinity;    // wall seconds of one run
-    std::optional<int> threads{};  // of its own; 0: all that the machine has
+    std::vector<std::string> measured_too{};  // metrics that claims of other variants need of this one
+    real time_limit = infinity;               // wall seconds of one run
+    std::optional<int> threads{};             // of its own; 0: all that the machine has
 
     std::size_t runs() const { return sweep ? sweep->values.size() : 1; }
 };

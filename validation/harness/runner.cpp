@@ -22,6 +22,8 @@ std::vector<std::string> metrics_of(const Variant& variant) {
     std::vector<std::string> names;
     for (const Criterion& c : variant.accept)
         if (std::find(names.begin(), names.end(), c.metric) == names.end()) names.push_back(c.metric);
+    for (const std::string& metric : variant.measured_too)
+        if (std::find(names.begin(), names.end(), metric) == names.end()) names.push_back(metric);
     return names;
 }
 
@@ -198,7 +200,7 @@ CaseResult validate(const Case& c, const std::filesystem::path& out, const Solve
             if (progress) progress(folder.string());
             v.runs.push_back(run_and_measure(c, variant, i, out / folder, solvers));
         }
-        if (!c.cut) v.verdicts = judge(variant, v.runs);
+        if (!c.cut) v.verdicts = judge(variant, v.runs, result.variants);
         result.variants.push_back(std::move(v));
     }
     if (!c.variants.empty() && !c.variants.front().reference.empty())

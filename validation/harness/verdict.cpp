@@ -20,7 +20,7 @@ constexpr real asymptotic_low = 0.8, asymptotic_high = 1.25;
 std::vector<const RunResult*> runs_of(const Criterion& c, const std::vector<RunResult>& runs) {
     std::vector<const RunResult*> chosen;
     for (const RunResult& r : runs)
-        if (c.every || c.is_order() || c.test == Test::gci_at_most || (c.at && r.value == *c.at)) chosen.push_back(&r);
+        if (c.every || c.is_order() || c.experiment || c.test == Test::gci_at_most || (c.at && r.value == *c.at)) chosen.push_back(&r);
     if (chosen.empty() && !runs.empty()) chosen.push_back(&runs.back());
     return chosen;
 }
@@ -77,7 +77,25 @@ void judge_orders(Verdict& v, const Criterion& c, const Variant& plan, const std
     v.pass = false;
 }
 
-Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<RunResult>& runs) {
+/// |E| <= 2 u_val, relative to the experiment; u_num from the grids of another variant.
+void judge_experiment(Verdict& v, const Criterion& c, const std::vector<RunResult>& runs, const std::vector<VariantResult>& before) {
+    real width = 0;
+    for (const VariantResult& other : before) {
+        if (other.plan.name != c.experiment->grids) continue;
+        const auto of_grids = band_of(other.plan, other.runs, c.metric);
+        width = of_grids ? of_grids->width : std::nan("");
+    }
+    std::vector<real> values;
+    for (const RunResult& r : runs) values.push_back(measured_in(r, c));
+    const ExperimentComparison comparison = compare(values, *c.experiment, width);
+    const real scale = std::abs(c.experiment->mean);
+    v.measured = comparison.error / scale;
+    v.high = comparison.power() / scale, v.low = -v.high;
+    v.pass = v.measured >= v.low && v.measured <= v.high && v.high <= c.experiment->power;
+    v.note = std::isnan(v.high) ? "a value, or the band of the grids, is not a number" : words_of(comparison, *c.experiment);
+}
+
+Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<RunResult>& runs, const std::vector<VariantResult>& before) {
     Verdict v{.variant = plan.name,
               .metric = c.metric,
               .criterion = std::string(name(c.test)),
@@ -93,11 +111,13 @@ Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<Run
         v.at = chosen.empty() ? "" : (*failed)->label;
         return v;
     }
-    if (c.is_order() || c.test == Test::gci_at_most)
+    if (c.experiment)
+        judge_experiment(v, c, runs, before);
+    else if (c.is_order() || c.test == Test::gci_at_most)
         judge_orders(v, c, plan, runs);
     else
         judge_values(v, c, chosen);
-    const bool of_finest = !c.is_order() && !c.is_monotone() && c.test != Test::gci_at_most && v.at == runs.back().label;
+    const bool of_finest = !c.experiment && !c.is_order() && !c.is_monotone() && c.test != Test::gci_at_most && v.at == runs.back().label;
     if (const auto band = of_finest ? band_of(plan, runs, c.metric) : std::nullopt) v.band = band->width;
     if (!c.not_reached.empty() && v.pass) v.note = "this open target is met: remove \"not_reached\"";
     return v;
@@ -112,9 +132,9 @@ std::string Verdict::bound() const {
     return fmt::format("in [{:.6g}, {:.6g}]", low, high);
 }
 
-std::vector<Verdict> judge(const Variant& plan, const std::vector<RunResult>& runs) {
+std::vector<Verdict> judge(const Variant& plan, const std::vector<RunResult>& runs, const std::vector<VariantResult>& before) {
     std::vector<Verdict> verdicts;
-    for (const Criterion& c : plan.accept) verdicts.push_back(judge_one(c, plan, runs));
+    for (const Criterion& c : plan.accept) verdicts.push_back(judge_one(c, plan, runs, before));
     return verdicts;
 }
 

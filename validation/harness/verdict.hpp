@@ -66,8 +66,9 @@ struct CaseResult {
     double seconds() const;
 };
 
-/// Judges every claim of a variant. What is NaN, missing, or rests on a failed run does not pass.
-std::vector<Verdict> judge(const Variant& plan, const std::vector<RunResult>& runs);
+/// Judges every claim of a variant. What is NaN, missing, or rests on a failed run does not pass. `before`: variants of the case that were
+/// run before, whose grids claims may name.
+std::vector<Verdict> judge(const Variant& plan, const std::vector<RunResult>& runs, const std::vector<VariantResult>& before = {});
 /// Orders of one metric over the runs of a variant.
 OrderTable order_table(const std::vector<RunResult>& runs, const std::string& metric);
 /// The band of a value on the finest grid of a sweep over grids; no value for errors, other sweeps, and fewer than three grids.

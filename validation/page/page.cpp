@@ -4,6 +4,7 @@
 #include "output/atomic_file.hpp"
 #include "output/image_file.hpp"
 #include "output/machine.hpp"
+#include "validation/page/document.hpp"
 #include "validation/page/sections.hpp"
 #include "validation/page/text.hpp"
 
@@ -11,13 +12,9 @@
 
 #include <algorithm>
 #include <set>
-#include <utility>
 #include <vector>
 
 namespace weir::validation {
-
-extern const char* const page_style;   // page.css
-extern const char* const page_script;  // page.js
 
 namespace {
 
@@ -46,37 +43,6 @@ std::string footer(const json& verdicts) {
 
 std::string card(const char* to, const char* title, const std::string& html) {
     return fmt::format("<section class=\"card\"><h2><a href=\"#{}\">{}</a></h2>{}</section>\n", to, title, html);
-}
-
-/// The headings with a place of their own, `<article id="...">` or `<h3 id="...">`, as links.
-std::string headings_in(const std::string& html) {
-    std::string list;
-    for (std::size_t at = 0; (at = html.find("<h3", at)) != std::string::npos; ++at) {
-        const std::size_t begin = html.find('>', at) + 1, end = html.find("</h3>", begin);
-        const std::size_t around = html.rfind("<article", at);
-        const bool own = html.compare(at, 7, "<h3 id=") == 0;
-        const bool of_article =
-            around != std::string::npos && html.find("<h3", around) == at && html.compare(around, 12, "<article id=") == 0;
-        if (end == std::string::npos || (!own && !of_article)) continue;
-        const std::size_t id = html.find('"', own ? at : around) + 1;
-        list += fmt::format("<li><a href=\"#{}\">{}</a></li>", html.substr(id, html.find('"', id) - id), html.substr(begin, end - begin));
-    }
-    return list.empty() ? list : "<ul>" + list + "</ul>";
-}
-
-/// What stays in sight: the parts of the page and the studies in them.
-std::string contents(const std::vector<std::pair<const char*, const std::string*>>& parts) {
-    std::string s = "<nav class=\"contents\"><details open><summary>Contents</summary><ul><li><a href=\"#top\">Top of the page</a></li>";
-    for (const auto& [id, html] : parts) {
-        std::string title = id;
-        title[0] = static_cast<char>(title[0] - 'a' + 'A');
-        if (!html->empty()) s += fmt::format("<li><a href=\"#{}\">{}</a>{}</li>", id, title, headings_in(*html));
-    }
-    return s + "</ul></details></nav>\n";
-}
-
-std::string part(const char* id, const char* title, const std::string& html) {
-    return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, html);
 }
 
 /// A picture as the page carries it: as JPEG where that is smaller.
@@ -118,22 +84,18 @@ std::string page_html(const std::filesystem::path& results) {
     const Section cost = cost_section(studies_in(results / "cost" / "json", "points"), results);
     const Section limits = limits_section(studies_in(results / "stability", "limits"), results);
     const Section pictures = pictures_section(results);
-    std::string s = fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>weir: results</title>\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-        "<meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\n<style>{}</style></head><body>\n",
-        page_style);
-    s += "<header id=\"top\"><h1>weir</h1><p>Fluid simulation by the methods of real-time graphics: verification and validation, cost of "
-         "accuracy, and stability limits.</p></header>\n<div class=\"page\">\n";
-    s += contents({{"pictures", &pictures.html}, {"cost", &cost.html}, {"limits", &limits.html}, {"claims", &claims.html}}) + "<main>\n";
-    s += "<div class=\"cards\">" + card("claims", "Verification and validation", claims.summary) +
-         card("cost", "Cost of accuracy", cost.summary) + card("limits", "Stability limits", limits.summary) + "</div>\n";
-    if (!pictures.html.empty()) s += part("pictures", "Pictures", pictures.html);
-    s += part("cost", "Cost of accuracy", cost.html);
-    s += part("limits", "Stability limits", limits.html);
-    s += part("claims", "Verification and validation", claims.html);
-    return s + "</main></div>\n<dialog id=\"large\"><form method=\"dialog\"><button>Close</button></form><div></div></dialog>\n" +
-           footer(verdicts) + "<script>" + page_script + "</script></body></html>\n";
+    Document page{.title = "weir: results",
+                  .header =
+                      "<h1>weir</h1><p>Fluid simulation by the methods of real-time graphics: verification and validation, cost of "
+                      "accuracy, and stability limits.</p>",
+                  .cards = card("claims", "Verification and validation", claims.summary) + card("cost", "Cost of accuracy", cost.summary) +
+                           card("limits", "Stability limits", limits.summary),
+                  .footer = footer(verdicts)};
+    if (!pictures.html.empty()) page.parts.push_back({"pictures", "Pictures", pictures.html});
+    page.parts.push_back({"cost", "Cost of accuracy", cost.html});
+    page.parts.push_back({"limits", "Stability limits", limits.html});
+    page.parts.push_back({"claims", "Verification and validation", claims.html});
+    return document_html(page);
 }
 
 std::filesystem::path write_page(const std::filesystem::path& results) {

@@ -277,10 +277,14 @@ std::string inline_svg(const std::string& svg, std::string_view prefix) {
     return without_empty_groups(one_line);
 }
 
+std::string plot_figure(const std::string& svg, std::string_view prefix) {
+    return "<figure class=\"scroll\">" + inline_svg(thin_svg(svg), prefix) + "</figure>\n";
+}
+
 std::string published_plot(const std::filesystem::path& svg, const std::string& prefix) {
     const std::string text = bytes_of(svg);
     if (text.empty()) return "<p>No plot is published.</p>";
-    return "<figure class=\"scroll\">" + inline_svg(thin_svg(text), prefix) + "</figure>\n";
+    return plot_figure(text, prefix);
 }
 
 }  // namespace weir::validation

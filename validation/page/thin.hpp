@@ -13,6 +13,9 @@ std::string thin_svg(const std::string& svg);
 /// A published plot as a figure of a page, its ids prefixed; a sentence where there is none.
 std::string published_plot(const std::filesystem::path& svg, const std::string& prefix);
 
+/// The text of an SVG as a figure of a page, its ids prefixed.
+std::string plot_figure(const std::string& svg, std::string_view prefix);
+
 /// An SVG to stand inside a page: no prolog, ids that begin with `prefix`, ink in the page's own colour and paper see-through.
 std::string inline_svg(const std::string& svg, std::string_view prefix);
 

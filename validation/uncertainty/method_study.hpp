@@ -49,7 +49,7 @@ struct MethodStudy {
     std::vector<QuantityStudy> quantities{};
     std::string left_out{};               // coarser grids, and why
     std::optional<real> chaotic_after{};  // [s]
-    std::string twin{};                   // what the twin run changed
+    std::string twin{};                   // what the twin run changed; empty: none was compared
     double estimated = 0;                 // computing seconds of the ladder, from its two coarsest grids
     double spent = 0;                     // of all grids of the ladder
     int next = 0;                         // number of the next finer grid

@@ -92,11 +92,13 @@ std::vector<scene::Override> changes_for_twin(const scene::Scene& scene, std::st
 
 void run_twin(MethodStudy& study, const Ladder& ladder, const std::vector<scene::Override>& more, RunStore& store) {
     const GridRun& second = study.grids.at(study.grids.size() - (study.grids.size() > few_grids ? 2 : 1));
-    const auto changes = changes_for_twin(ladder.scene(second.grid), study.twin);
+    std::string what;
+    const auto changes = changes_for_twin(ladder.scene(second.grid), what);
     const RecordedRun* twin = changed_run(ladder, second.grid, more, changes, store);
     if (!twin) return;
     for (const QuantityStudy& quantity : study.quantities) {
         if (quantity.asked.is_metric || quantity.asked.quantity.kind == Statistic::picture) continue;
+        study.twin = what;
         const auto& name = quantity.asked.quantity.series;
         const RecordedSeries& series = series_named(second.run.series, name);
         const real least = std::max(round_off * largest_of_unit(second.run, series.unit), no_variation * largest_of(series.curve));

@@ -7,6 +7,7 @@
 #include "validation/cost/load.hpp"
 #include "validation/cost/plan.hpp"
 #include "validation/cost/recommend.hpp"
+#include "validation/page/text.hpp"
 #include "validation/report/command.hpp"
 
 #include <fmt/format.h>
@@ -36,6 +37,14 @@ std::vector<Wish> wishes_of(const ScenePlanOptions& options, std::size_t quantit
     if (!wishes.empty() && wishes.size() != quantities)
         throw BadInput(fmt::format("--error: give one for all quantities, or one for each of the {}", quantities));
     return wishes;
+}
+
+Limits limits_of(const ScenePlanOptions& options) {
+    Limits limits;
+    if (!options.budget.empty()) limits.budget = parse_seconds(options.budget);
+    if (!options.frame.empty()) limits.frame = parse_seconds(options.frame);
+    if (!options.time_limit.empty()) limits.time_limit = parse_seconds(options.time_limit);
+    return limits;
 }
 
 /// The scene's own method, then the others, each once.
@@ -115,21 +124,32 @@ void check_units(const std::vector<Asked>& asked, const std::vector<Wish>& wishe
 /// Methods that have become chaotic before the end of the asked times are not compared: their series differ for that reason.
 bool comparable(const PlannedMethod& m) { return m.study.solver_fails.empty() && !m.study.chaotic_after; }
 
+/// Largest error of the quantities on a grid, over the wish or over the scale; infinite where one is refused.
+real error_of(const ScenePlan& plan, const MethodStudy& study, std::size_t g) {
+    real error = 0;
+    for (std::size_t q = 0; q < study.quantities.size(); ++q) {
+        const QuantityStudy& quantity = study.quantities[q];
+        const bool known = quantity.refused.empty() && g < quantity.error.size();
+        const real to = plan.wishes.empty() ? quantity.finest().scale : absolute(plan.wishes[q], quantity.finest());
+        error = std::max(error, known ? quantity.error[g] / (to > 0 ? to : 1) : infinity);
+    }
+    return error;
+}
+
+bool meets_wishes(const ScenePlan& plan, real error) { return plan.wishes.empty() ? error < infinity : error <= 1; }
+
 }  // namespace
 
 ScenePlan plan_scene(const ScenePlanOptions& options, const Solvers& solvers, const Tell& tell) {
-    ScenePlan plan{.file = scene_named(options.scene), .set = options.set};
+    ScenePlan plan{.file = scene_named(options.scene), .command = plan_line(options), .limits = limits_of(options), .set = options.set};
     const scene::Scene scene = scene::read(plan.file, scene::schemas_of(solvers), options.set);
-    plan.name = sim::scene_name(scene);
+    plan.name = sim::scene_name(scene), plan.title = scene.text("title");
     const std::vector<Method> methods = methods_of(scene, options.with, solvers);
     if (!options.of.empty()) plan.asked = parse_asked(options.of);
     const auto series = series_of(scene, methods.front(), solvers);
     check_asked(plan.asked, scene, series);
     plan.wishes = wishes_of(options, plan.asked.size());
     check_units(plan.asked, plan.wishes, series);
-    if (!options.budget.empty()) plan.limits.budget = parse_seconds(options.budget);
-    if (!options.frame.empty()) plan.limits.frame = parse_seconds(options.frame);
-    if (!options.time_limit.empty()) plan.limits.time_limit = parse_seconds(options.time_limit);
     std::vector<std::string> metrics;
     for (const Asked& a : plan.asked)
         if (a.is_metric) metrics.push_back(a.quantity.text);
@@ -167,14 +187,8 @@ std::optional<Recommended> recommended(const ScenePlan& plan) {
         const MethodStudy& study = plan.methods[m].study;
         if (plan.methods[m].other_equations() || study.quantities.empty()) continue;
         for (std::size_t g = study.grids.size(); g-- > 0;) {  // from fine to coarse, as long as all finer grids meet the wishes
-            real error = 0;                                   // largest of the quantities, over the wish or over the scale
-            for (std::size_t q = 0; q < study.quantities.size(); ++q) {
-                const QuantityStudy& quantity = study.quantities[q];
-                const bool known = quantity.refused.empty() && g < quantity.error.size();
-                const real to = plan.wishes.empty() ? quantity.finest().scale : absolute(plan.wishes[q], quantity.finest());
-                error = std::max(error, known ? quantity.error[g] / (to > 0 ? to : 1) : infinity);
-            }
-            const bool meets = plan.wishes.empty() ? error < infinity : error <= 1;
+            const real error = error_of(plan, study, g);
+            const bool meets = meets_wishes(plan, error);
             if (!meets) break;
             const Recommended choice{m, g, study.seconds_per_frame(g, plan.limits.frame)};
             if (choice.seconds > plan.limits.budget || !study.grids[g].run.balanced) continue;
@@ -183,6 +197,33 @@ std::optional<Recommended> recommended(const ScenePlan& plan) {
         }
     }
     return best;
+}
+
+std::string_view verdict_of(const ScenePlan& plan, std::size_t method, std::size_t grid) {
+    const MethodStudy& study = plan.methods[method].study;
+    if (plan.take && plan.take->method == method && plan.take->grid == grid) return "recommended";
+    if (study.grids[grid].run.failure) return "failed";
+    if (plan.methods[method].other_equations()) return "other equations";
+    for (const QuantityStudy& quantity : study.quantities)
+        if (!quantity.refused.empty()) return "refused";
+    if (!meets_wishes(plan, error_of(plan, study, grid))) return "error too large";
+    for (std::size_t finer = grid + 1; finer < study.grids.size(); ++finer)
+        if (!meets_wishes(plan, error_of(plan, study, finer))) return "error of a finer grid too large";
+    if (study.seconds_per_frame(grid, plan.limits.frame) > plan.limits.budget) return "over the budget";
+    return study.grids[grid].run.balanced ? "meets the request" : "balance warns";
+}
+
+std::string plan_line(const ScenePlanOptions& options) {
+    std::string line = "weir plan " + shell_word(options.scene);
+    const auto add = [&](const char* option, const std::string& text) {
+        if (!text.empty()) line += fmt::format(" {} {}", option, shell_word(text));
+    };
+    for (const std::string& quantity : options.of) add("--of", quantity);
+    for (const std::string& error : options.error) add("--error", error);
+    add("--budget", options.budget), add("--frame", options.frame), add("--time-limit", options.time_limit), add("--with", options.with);
+    for (const scene::Override& change : options.set) add("--set", change.key + "=" + change.value);
+    add("--out", options.out.string());
+    return line;
 }
 
 std::string run_line(const ScenePlan& plan, const Recommended& choice) {
@@ -219,7 +260,14 @@ std::string_view left_out_by(std::string_view solver) {
 void keep_results(const ScenePlan& plan) {
     if (plan.folder.empty()) return;
     output::write_file(plan.folder / "plan.json", plan_json(plan));
-    draw_plan(plan, plan.folder / "plan.svg");
+    const std::filesystem::path svg = plan.folder / "plan.svg", page = plan.folder / "index.html";
+    try {
+        draw_plan(plan, svg);
+    } catch (const OutputError&) {
+        output::write_file(page, plan_page(plan, ""));
+        throw;
+    }
+    output::write_file(page, plan_page(plan, bytes_of(svg)));
 }
 
 int scene_plan_command(const ScenePlanOptions& options, const Solvers& solvers) {
@@ -230,7 +278,8 @@ int scene_plan_command(const ScenePlanOptions& options, const Solvers& solvers) 
     if (talk) std::fprintf(stderr, "\r\033[K");
     std::fputs(plan_text(plan).c_str(), stdout);
     keep_results(plan);
-    if (!plan.folder.empty()) fmt::print("figure: {}\n", (plan.folder / "plan.svg").string());
+    if (!plan.folder.empty())
+        fmt::print("figure: {}\npage: {}\n", (plan.folder / "plan.svg").string(), (plan.folder / "index.html").string());
     return plan.take ? exit_success : exit_claim_failed;
 }
 

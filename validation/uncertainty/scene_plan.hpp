@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace weir::validation {
@@ -44,13 +45,14 @@ struct Recommended {
 };
 
 struct ScenePlan {
-    std::string name{}, file{};
+    std::string name{}, file{}, title{};
+    std::string command{};  // that asks again
     std::vector<Asked> asked{};
     std::vector<Wish> wishes{};  // none, or one for each quantity
     Limits limits{};
     std::vector<PlannedMethod> methods{};  // the scene's own first
     std::optional<Recommended> take{};
-    std::filesystem::path folder{};  // of plan.json, plan.svg and the runs; empty: not kept
+    std::filesystem::path folder{};  // of plan.json, plan.svg, index.html and the runs; empty: not kept
     double others = 0;               // cores that other programs used meanwhile
     double spent = 0;                // computing seconds of the runs made now
     std::vector<scene::Override> set{};
@@ -63,6 +65,11 @@ ScenePlan plan_scene(const ScenePlanOptions& options, const Solvers& solvers, co
 /// Methods that solve other equations than the scene's own are left out, and grids whose balance warns.
 std::optional<Recommended> recommended(const ScenePlan& plan);
 
+/// How far a grid meets the request, in words: "recommended", "meets the request", or why it is not recommended.
+std::string_view verdict_of(const ScenePlan& plan, std::size_t method, std::size_t grid);
+
+/// The command that asks this question.
+std::string plan_line(const ScenePlanOptions& options);
 /// The command that runs a grid of a method.
 std::string run_line(const ScenePlan& plan, const Recommended& choice);
 /// What a method leaves out of the equations of fluids; empty for an unknown one.
@@ -73,11 +80,15 @@ std::string plan_json(const ScenePlan& plan);
 /// Value with its band against computing time per frame; for series, the finest results.
 void draw_plan(const ScenePlan& plan, const std::filesystem::path& svg);
 
-/// Writes plan.json and plan.svg into the plan's folder, where it has one.
+/// The plan as one HTML file that needs no network, in the style of the page of results. `svg`: the text of its figure; may be empty.
+std::string plan_page(const ScenePlan& plan, const std::string& svg);
+
+/// Writes plan.json, plan.svg and index.html into the plan's folder, where it has one. Throws OutputError; without gnuplot the page has no
+/// figure.
 void keep_results(const ScenePlan& plan);
 
-/// Plans, prints, and keeps plan.json, plan.svg and the runs beside the results of the scene. Returns the exit code: 1 where nothing meets
-/// the wishes.
+/// Plans, prints, and keeps plan.json, plan.svg, index.html and the runs beside the results of the scene. Returns the exit code: 1 where
+/// nothing meets the wishes.
 int scene_plan_command(const ScenePlanOptions& options, const Solvers& solvers);
 
 }  // namespace weir::validation

@@ -34,6 +34,9 @@ Effects<MacState<D>> make_effects(const EffectKinds& kinds, const scene::Scene& 
 /// du/dt = g on every fluid.
 EffectKind gravity();
 
+/// The forces in the frame of a tank that rolls (geometry/rotating_frame.hpp), for solvers whose forces act at the end of a step.
+EffectKind rotating_frame();
+
 /// The kinds of interactive forcing in this scene: heat needs a substance, grab needs bodies.
 std::initializer_list<BrushKind> kinds_of_brush(const scene::Scene& scene);
 /// Interactive forcing (geometry/brush.hpp), applied at this stage.

@@ -1,10 +1,13 @@
 // The effects of every particle method. A new one is a struct here and a row of offers(): it is then available in scenes and acts on
 // threads. The other backends reject it by name until they support it (device_effects.cpp; reference_solver.cpp of the method).
 #include "geometry/brush.hpp"
+#include "geometry/rotating_frame.hpp"
 #include "particles/state/flow.hpp"
 #include "scene/gravity.hpp"
 
+#include <cmath>
 #include <memory>
+#include <type_traits>
 
 namespace weir::particles {
 
@@ -26,6 +29,32 @@ struct Gravity final : Effect<Flow<D>> {
             auto& va = f.fluid.v[static_cast<std::size_t>(a)];
             parallel_for(0, f.fluid.count(), [&](int i) { va[static_cast<std::size_t>(i)] += dt * g[a]; });
         }
+    }
+};
+
+/// The frame of a tank that rolls. The Coriolis force turns the velocity, between halves of the other forces (Boris 1970): it does no work
+/// in any step. Gravity, which acts before, is taken half back for that.
+template <int D>
+struct RotatingFrame final : Effect<Flow<D>> {
+    geometry::RotatingFrame<D> frame;
+    RotatingFrame(const scene::Table& t, const scene::Scene& scene) : frame(t, scene) {}
+    Stage stage() const override { return Stage::force; }
+    void apply(Flow<D>& f, real dt) override {
+        const auto roll = frame.at(f.fluid.time);  // forces act where particles are
+        const real c = std::cos(2 * roll.rate * dt), s = std::sin(2 * roll.rate * dt);
+        const int p = frame.p(), q = frame.q();
+        parallel_for(0, f.fluid.count(), [&](int i) {
+            const Vec<D> a = frame.acceleration(roll, f.fluid.position(i));
+            Vec<D> v = f.fluid.velocity(i) + (dt / 2) * (a - frame.gravity());
+            const real vp = c * v[p] + s * v[q];
+            v[q] = c * v[q] - s * v[p];
+            v[p] = vp;
+            Fluid<D>::put(f.fluid.v, i, v + (dt / 2) * (a + frame.gravity()));
+        });
+    }
+    real max_dt(const Flow<D>& f) const override {
+        const real most = frame.most(f.fluid.domain.lo, f.fluid.domain.hi);
+        return most > 0 ? 0.5 * std::sqrt(f.fluid.domain.spacing / most) : infinity;
     }
 };
 
@@ -87,11 +116,14 @@ struct Confinement final : Effect<Flow<D>> {
 template <int D>
 struct Offer {
     scene::Variant schema;
-    std::unique_ptr<Effect<Flow<D>>> (*make)(const scene::Table&);
+    std::unique_ptr<Effect<Flow<D>>> (*make)(const scene::Table&, const scene::Scene&);
 };
 template <int D, class E>
-std::unique_ptr<Effect<Flow<D>>> make(const scene::Table& table) {
-    return std::make_unique<E>(table);
+std::unique_ptr<Effect<Flow<D>>> make(const scene::Table& table, const scene::Scene& scene) {
+    if constexpr (std::is_constructible_v<E, const scene::Table&, const scene::Scene&>)
+        return std::make_unique<E>(table, scene);
+    else
+        return std::make_unique<E>(table);
 }
 
 /// In the order in which they act.
@@ -116,6 +148,7 @@ std::vector<Offer<D>> offers() {
         .name = "epsilon", .type = Type::number, .doc = "Strength.", .unit = "m/s", .required = true, .min = 0, .steerable = true};
     return {{scene::gravity_effect("A constant acceleration."), make<D, Gravity<D>>},
             {{"central_force", "An acceleration -omega^2 (x - centre).", {omega, centre}, {"omega"}}, make<D, CentralForce<D>>},
+            {geometry::rotating_frame_schema(), make<D, RotatingFrame<D>>},
             {{"xsph", "Velocities are smoothed over neighbours (Schechter & Bridson 2012).", {c}, {"c"}}, make<D, Xsph<D>>},
             {{"vorticity", "Vorticity confinement (Macklin & Müller 2013, eq. 16).", {epsilon}, {"epsilon"}}, make<D, Confinement<D>>}};
 }
@@ -132,7 +165,7 @@ std::vector<scene::Variant> effect_schemas() {
 template <int D>
 void add_effects(const scene::Scene& scene, Effects<Flow<D>>& effects) {
     for (const auto& offer : offers<D>())
-        if (const auto* table = scene.effect(offer.schema.name)) effects.add(offer.schema.name, offer.make(*table));
+        if (const auto* table = scene.effect(offer.schema.name)) effects.add(offer.schema.name, offer.make(*table, scene));
 }
 
 template void add_effects(const scene::Scene&, Effects<Flow<2>>&);

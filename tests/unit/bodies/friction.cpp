@@ -2,6 +2,8 @@
 #include "smoke/body_friction.hpp"
 #include "support.hpp"
 
+namespace friction_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -101,3 +103,5 @@ TEST("a body with friction goes on after a restart as if nothing had been") {
     for (const char* field : {"position", "velocity", "force", "viscous_force"})
         for (std::size_t c = 0; c < 2; ++c) EXPECT_EQ(shown(*solver, field, c), shown(*again, field, c)) << field;
 }
+
+}  // namespace friction_tests

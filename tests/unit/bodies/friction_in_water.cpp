@@ -2,6 +2,8 @@
 #include "mac/bodies/bodies_in_flow.hpp"
 #include "support.hpp"
 
+namespace friction_in_water_tests {
+
 using namespace weir;
 using namespace weir::test;
 using namespace weir::free_surface;
@@ -241,3 +243,5 @@ bodies = [ { shape = "box", min = [0.1, 0.25, 0.15], max = [0.35, 0.4, 0.4], den
         EXPECT_NE(shown(*one, "viscous_force", 1, 0), 0.0);
     }
 }
+
+}  // namespace friction_in_water_tests

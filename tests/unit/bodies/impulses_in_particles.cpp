@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace impulses_in_particles_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -99,3 +101,5 @@ TEST_IN_2D_AND_3D("stiffness adds no mass to a body across the normal") {
             EXPECT_NEAR(norm(e.body.mass * e.velocity() + m * given), 0, 1e-12 * m * g) << "momentum: " << stiff << ' ' << friction;
         }
 }
+
+}  // namespace impulses_in_particles_tests

@@ -1,6 +1,8 @@
 // Bodies in a fluid that fills its vessel: added mass, balance, light bodies.
 #include "support.hpp"
 
+namespace in_flow_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -139,3 +141,5 @@ TEST("balls a hundredth as dense as the water add at most six iterations each to
     EXPECT_LE(mean_iterations(1), none + 6);
     EXPECT_LE(mean_iterations(3), none + 18);
 }
+
+}  // namespace in_flow_tests

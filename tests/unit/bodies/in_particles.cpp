@@ -5,6 +5,8 @@
 #include "sph/state.hpp"
 #include "support.hpp"
 
+namespace in_particles_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -307,3 +309,5 @@ TEST("the water that a body displaces at the start is taken out to a particle") 
             << low;  // of each of 16 cells half an eighth, and half a particle
     }
 }
+
+}  // namespace in_particles_tests

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+namespace in_water_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -283,3 +285,5 @@ bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], densi
     }
     EXPECT_LT(placement.changed().front().hi[0] - placement.changed().front().lo[0], 20);  // boxes, not the whole grid
 }
+
+}  // namespace in_water_tests

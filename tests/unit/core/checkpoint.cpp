@@ -10,6 +10,8 @@
 #include <fstream>
 #include <vector>
 
+namespace checkpoint_tests {
+
 using namespace weir;
 
 namespace {
@@ -163,3 +165,5 @@ TEST("a checkpoint that is replaced while it is read stays what it was") {
     Checkpoint::read(scratch("copied")).get("values", back);
     EXPECT_EQ(back, (std::vector<double>{1, 2, 3}));
 }
+
+}  // namespace checkpoint_tests

@@ -1,7 +1,7 @@
 // Exact sums: the correctly rounded sum, for any order and any distribution of the terms.
 #include "core/exact_sum.hpp"
 
-#include <gtest/gtest.h>
+#include "support/test.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace weir {
+namespace weir::exact_sum_tests {
 namespace {
 
 real sum_of(const std::vector<real>& terms) {
@@ -22,7 +22,7 @@ real sum_of(const std::vector<real>& terms) {
     return a;
 }
 
-TEST(ExactSum, KeepsWhatAFloatingPointSumLoses) {
+TEST("an exact sum keeps what a floating-point sum loses") {
     EXPECT_EQ(sum_of({}), 0);
     EXPECT_EQ(sum_of({1e300, 1, -1e300}), 1);                                  // 600 decades apart
     EXPECT_EQ(sum_of({1e308, 1e308, -1e308}), 1e308);                          // beyond the range in between
@@ -30,7 +30,7 @@ TEST(ExactSum, KeepsWhatAFloatingPointSumLoses) {
     EXPECT_EQ(sum_of(std::vector<real>(100000, 0.1)), 10000.000000000000555);  // 1e5 times the double nearest to 0.1
 }
 
-TEST(ExactSum, RoundsToNearestAndTiesToEven) {
+TEST("an exact sum is rounded once: to nearest, ties to even") {
     const real half = 0x1p-53, little = 0x1p-200;  // half a unit in the last place of 1
     EXPECT_EQ(sum_of({1, half}), 1);
     EXPECT_EQ(sum_of({1, half, little}), 1 + 0x1p-52);
@@ -40,7 +40,7 @@ TEST(ExactSum, RoundsToNearestAndTiesToEven) {
     EXPECT_EQ(sum_of({1, half, -little}), 1);
 }
 
-TEST(ExactSum, DoesNotDependOnOrderOrDistribution) {
+TEST("an exact sum does not depend on order or distribution") {
     std::mt19937_64 random(1);
     std::normal_distribution<real> normal;
     std::vector<real> terms(20000);
@@ -62,7 +62,7 @@ TEST(ExactSum, DoesNotDependOnOrderOrDistribution) {
     EXPECT_LE(std::abs(sum_of(terms)), 0.5 * std::numeric_limits<real>::epsilon() * std::abs(sum));
 }
 
-TEST(ExactSum, PassesOnInfinitiesAndNan) {
+TEST("an exact sum passes on infinities and NaN") {
     EXPECT_EQ(sum_of({1, infinity, -5}), infinity);
     EXPECT_EQ(sum_of({-infinity, 1e308, 1e308}), -infinity);
     EXPECT_TRUE(std::isnan(sum_of({infinity, -infinity})));
@@ -70,7 +70,7 @@ TEST(ExactSum, PassesOnInfinitiesAndNan) {
     EXPECT_EQ(sum_of({1e308, 1e308}), infinity);  // overflow of the result
 }
 
-TEST(ExactSums, SumsEveryComponent) {
+TEST("exact sums of a struct are those of its components") {
     struct Pair {
         real a, b;
     };
@@ -84,4 +84,4 @@ TEST(ExactSums, SumsEveryComponent) {
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::exact_sum_tests

@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+namespace programs_tests {
+
 using namespace weir;
 
 TEST("each word arrives as it is: quotes, back quotes, spaces, $ and % mean nothing") {
@@ -37,3 +39,5 @@ TEST("a path that begins with - is no option") {
     EXPECT_EQ(file_argument("-f.mp4"), "./-f.mp4");
     EXPECT_EQ(file_argument("a/-f.mp4"), "a/-f.mp4");
 }
+
+}  // namespace programs_tests

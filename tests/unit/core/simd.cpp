@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+namespace simd_tests {
+
 using namespace weir;
 using simd::d8, simd::Side;
 
@@ -44,3 +46,5 @@ TEST("the common sign of lanes: zero belongs to neither side") {
         EXPECT_EQ(simd::side_of(v), Side::both);
     }
 }
+
+}  // namespace simd_tests

@@ -10,6 +10,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+namespace words_tests {
+
 using namespace weir;
 namespace fs = std::filesystem;
 
@@ -70,3 +72,5 @@ TEST("where memory ends the file is refused: what has been read is not taken for
     setrlimit(RLIMIT_AS, &before);
     EXPECT_TRUE(has(said, "not enough memory")) << said;
 }
+
+}  // namespace words_tests

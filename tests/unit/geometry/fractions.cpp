@@ -3,6 +3,8 @@
 
 #include <random>
 
+namespace fractions_tests {
+
 using namespace weir;
 using namespace weir::geometry;
 
@@ -45,3 +47,5 @@ TEST("the fraction does not depend on how the square is turned or mirrored") {
         EXPECT_NEAR(fraction_positive(v), fraction_positive({v[3], v[2], v[1], v[0]}), 1e-14);
     }
 }
+
+}  // namespace fractions_tests

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+namespace images_tests {
+
 using namespace weir;
 using namespace weir::geometry;
 
@@ -85,3 +87,5 @@ TEST_IN_2D_AND_3D("along two periodic axes there are images across the corners")
     for (const auto& [x, y] : {std::pair{1.4, 0.0}, {1.4, 1.0}, {-0.5, 0.0}, {-0.5, 1.0}})
         EXPECT_NEAR(solids.distance(at<D>(x, y)), (x > 0 ? 0.0 : 0.1) - 0.2, 1e-14) << x << ' ' << y;
 }
+
+}  // namespace images_tests

@@ -5,6 +5,8 @@
 
 #include <random>
 
+namespace line_tests {
+
 using namespace weir;
 using namespace weir::geometry;
 
@@ -83,3 +85,5 @@ TEST_IN_2D_AND_3D("shapes that are turned are what their distance says at sample
             }
         }
 }
+
+}  // namespace line_tests

@@ -13,6 +13,8 @@
 #include <map>
 #include <random>
 
+namespace meshes_tests {
+
 using namespace weir;
 using namespace weir::geometry;
 
@@ -318,3 +320,5 @@ TEST("the shapes of the tree are closed, lie about their waterline, and carry co
         EXPECT_NEAR(mesh.centre()[2], 0, 1e-3) << name;  // one side like the other
     }
 }
+
+}  // namespace meshes_tests

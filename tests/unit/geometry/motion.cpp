@@ -2,6 +2,8 @@
 
 #include "support/test.hpp"
 
+namespace motion_tests {
+
 using namespace weir;
 using namespace weir::geometry;
 
@@ -50,3 +52,5 @@ TEST("outside its frames a keyframed solid is at rest") {
     for (real t : {0.5, 2.5}) EXPECT_EQ(norm(motion.pose(t).velocity_at({{0.3, 0.4}})), 0);
     EXPECT_NEAR(motion.pose(1.5).velocity_at({{0.5, 0}})[0], 1, 1e-15);
 }
+
+}  // namespace motion_tests

@@ -5,6 +5,8 @@
 
 #include <random>
 
+namespace shape_tests {
+
 using namespace weir;
 using namespace weir::geometry;
 
@@ -95,3 +97,5 @@ TEST_IN_2D_AND_3D("a capsule ends in half a ball at both of its ends, whichever 
         EXPECT_NEAR(shape->distance(a - beyond), 0.3, 1e-15);
     }
 }
+
+}  // namespace shape_tests

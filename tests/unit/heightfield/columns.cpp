@@ -10,6 +10,8 @@
 #include <cmath>
 #include <utility>
 
+namespace columns_tests {
+
 using namespace weir;
 using namespace weir::heightfield;
 
@@ -299,3 +301,5 @@ TEST("an object that passes column after column leaves waves behind and no comb"
     }
     EXPECT_LT(std::sqrt(sum / count) / 0.02, 0.1);
 }
+
+}  // namespace columns_tests

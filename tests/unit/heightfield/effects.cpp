@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace effects_tests {
+
 using namespace weir;
 using namespace weir::heightfield;
 
@@ -153,3 +155,5 @@ TEST("an inflow pours as much through the upper side as through the lower one") 
     EXPECT_GT(net_inflow("x_min", 0.1), 1e-4);
     EXPECT_NEAR(net_inflow("x_max", -0.1), net_inflow("x_min", 0.1), 1e-14);
 }
+
+}  // namespace effects_tests

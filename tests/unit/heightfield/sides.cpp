@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace sides_tests {
+
 using namespace weir;
 
 namespace {
@@ -77,3 +79,5 @@ TEST("with x and z exchanged the water moves as before, beside open sides and in
         EXPECT_GT(moved, 1e-3) << model;
     }
 }
+
+}  // namespace sides_tests

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace stages_tests {
+
 using namespace weir;
 using namespace weir::heightfield;
 
@@ -129,3 +131,5 @@ TEST("friction slows a film and never turns it around, however long the step") {
             EXPECT_NEAR(q1 + dt * k * q1 * q1 / 1e-4, 0.01, 1e-14);
         }
 }
+
+}  // namespace stages_tests

@@ -11,6 +11,8 @@
 
 #include <fstream>
 
+namespace terrain_tests {
+
 using namespace weir;
 using namespace weir::heightfield;
 
@@ -209,3 +211,5 @@ TEST_IN_2D_AND_3D("liquid of any thickness is there: a film, a slope, the cap of
             ASSERT_NEAR(s.h[s.plane.at(i, k)], r2 < 1 ? std::max(0.0, std::sqrt(1 - r2) - 0.99) : 0, 1e-15) << i << ' ' << k;
         }
 }
+
+}  // namespace terrain_tests

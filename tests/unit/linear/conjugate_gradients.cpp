@@ -8,6 +8,8 @@
 #include <functional>
 #include <numeric>
 
+namespace conjugate_gradients_tests {
+
 using namespace weir;
 
 namespace {
@@ -224,3 +226,5 @@ TEST("one message of a missed tolerance: quantity, solve, residual, iterations a
     EXPECT_NE(message([&] { linear::require_converged("velocity", "viscous solve", {std::nan(""), false}, stop); }), "nothing was thrown");
     EXPECT_EQ(message([&] { linear::require_converged("velocity", "viscous solve", {1e-6, false}, stop); }), "nothing was thrown");
 }
+
+}  // namespace conjugate_gradients_tests

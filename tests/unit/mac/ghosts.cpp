@@ -3,7 +3,7 @@
 
 #include "support/test.hpp"
 
-namespace weir::mac {
+namespace weir::mac::ghosts_tests {
 
 namespace {
 
@@ -75,4 +75,4 @@ TEST_IN_2D_AND_3D("ghost layers are what their rules say, corners included, prof
         }
 }
 
-}  // namespace weir::mac
+}  // namespace weir::mac::ghosts_tests

@@ -4,7 +4,7 @@
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
-namespace weir::smoke {
+namespace weir::smoke::projection_tests {
 
 namespace {
 
@@ -79,4 +79,4 @@ TEST_IN_2D_AND_3D("the identity holds in cells that are not cubes, whichever edg
     }
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::projection_tests

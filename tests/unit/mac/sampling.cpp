@@ -4,7 +4,7 @@
 
 #include "parallel/grid.hpp"
 
-namespace weir::mac {
+namespace weir::mac::sampling_tests {
 
 namespace {
 
@@ -160,4 +160,4 @@ TEST_IN_2D_AND_3D("mirrored points give the same bits from mirrored data") {
     }
 }
 
-}  // namespace weir::mac
+}  // namespace weir::mac::sampling_tests

@@ -4,7 +4,7 @@
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
-namespace weir::smoke {
+namespace weir::smoke::solid_faces_tests {
 
 namespace {
 
@@ -66,4 +66,4 @@ TEST("a cylinder that swings in inviscid fluid neither makes nor loses momentum,
     EXPECT_LT(speed, 4 * 0.15 * pi);  // potential flow past a cylinder is twice as fast as the body; blocked by the walls, up to 4 times
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::solid_faces_tests

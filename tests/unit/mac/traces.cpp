@@ -7,7 +7,7 @@
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
-namespace weir::smoke {
+namespace weir::smoke::traces_tests {
 
 namespace {
 
@@ -96,4 +96,4 @@ TEST_IN_2D_AND_3D("MacCormack plane by plane gives the bits of its two sweeps, f
     }
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::traces_tests

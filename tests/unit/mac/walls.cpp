@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <cmath>
 
-namespace weir::smoke {
+namespace weir::smoke::walls_tests {
 
 namespace {
 
@@ -134,4 +134,4 @@ TEST("a solid thinner than a cell is named before the run, with its thickness an
     EXPECT_NE(said[0].find("grid.cells = [84, 84]"), std::string::npos);  // 20 cells times 2/0.48, upwards
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::walls_tests

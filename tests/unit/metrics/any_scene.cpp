@@ -10,6 +10,8 @@
 
 #include <map>
 
+namespace any_scene_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -89,3 +91,5 @@ TEST("every metric of a run of any case, two steps long, is a number or refused"
     }
     for (const auto& [metric, what] : wrong) ADD_FAILURE() << metric << " on " << what;
 }
+
+}  // namespace any_scene_tests

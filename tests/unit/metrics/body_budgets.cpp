@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace body_budgets_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -99,3 +101,5 @@ TEST("water is counted where it is: above a body's flat bottom and below a flat 
     EXPECT_NEAR(energy, exact, 9810 * 0.53 * (1.0 / 16 / 16));
     EXPECT_GT(std::abs(energy - 9810 * 0.5 * 0.53 * 0.53), 100) << "what the body displaces is not water";
 }
+
+}  // namespace body_budgets_tests

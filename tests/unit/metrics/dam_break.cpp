@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace dam_break_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -62,3 +64,5 @@ TEST("two experiments are as far apart as their points, over the rows that both 
     ref.curves["front.other"] = {.x = {1, 2}, .y = {2.2, 3}};  // 10% and nothing off at two rows; the others lie outside
     EXPECT_NEAR(measure("experiments.distance", RunRecord{}, ref), 0.05, 1e-12);
 }
+
+}  // namespace dam_break_tests

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace energy_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -78,3 +80,5 @@ TEST("where something does work that no integral counts, energy is not claimed")
     EXPECT_NE(refusal("sides = { x_max = \"outflow\" }\n").find("open"), std::string::npos);
     EXPECT_EQ(refusal("solids = [ { shape = \"sphere\", centre = [0.5, 2.8], radius = 0.1 } ]\n"), "accepted");
 }
+
+}  // namespace energy_tests

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace heave_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -65,3 +67,5 @@ TEST("a reference of fewer than three extrema, and a run that broke, have no err
     flat.curves["heave"].y.assign(flat.curves["heave"].x.size(), 1);
     EXPECT_TRUE(std::isnan(measure("body.extrema_error", swing([](real) { return 1.0; }), flat)));
 }
+
+}  // namespace heave_tests

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <deque>
 
+namespace judges_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -183,3 +185,5 @@ TEST("the emptiest part: 1 where every sixteenth holds as many, 1/4 where one ho
         if (x[i] < 0.25 && y[i] < 0.25) x[i] += 0.75, y[i] += 0.75;
     EXPECT_EQ(emptiest(), 0);
 }
+
+}  // namespace judges_tests

@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace samples_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -55,3 +57,5 @@ TEST("a cubic is reproduced between uneven points") {
     for (const real x : {0.0, 0.1, 0.3, 0.35, 0.7, 1.0}) c.x.push_back(x), c.y.push_back(f(x));
     for (const real x : {0.0, 0.05, 0.32, 0.5, 0.99, 1.0}) EXPECT_NEAR(cubic(c, x), f(x), 1e-13);
 }
+
+}  // namespace samples_tests

@@ -5,6 +5,8 @@
 
 #include <functional>
 
+namespace signal_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -45,3 +47,5 @@ TEST("a power law gives back its exponent, in the window only") {
     EXPECT_NEAR(power_law(c, 0.1, 0.9), 0, 1e-12);
     EXPECT_TRUE(std::isnan(power_law(c, 20, 30)));
 }
+
+}  // namespace signal_tests

@@ -10,6 +10,8 @@
 
 #include <sys/stat.h>
 
+namespace atomic_file_tests {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -66,3 +68,5 @@ TEST("a device stays one; a full one is an error that names it") {
 }
 
 }  // namespace
+
+}  // namespace atomic_file_tests

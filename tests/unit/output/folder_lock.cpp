@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace folder_lock_tests {
+
 namespace {
 
 using weir::output::FolderLock;
@@ -71,3 +73,5 @@ TEST("no link leads the lock to another file") {
 }
 
 }  // namespace
+
+}  // namespace folder_lock_tests

@@ -15,6 +15,8 @@
 #include <fstream>
 #include <sstream>
 
+namespace formats_tests {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,3 +118,5 @@ TEST("the options of frames are those of the scene") {
 }
 
 }  // namespace
+
+}  // namespace formats_tests

@@ -21,6 +21,8 @@
 #include <vtkFieldData.h>
 #include <vtkPointData.h>
 
+namespace frames_tests {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -327,3 +329,5 @@ TEST("an output folder that cannot be written is refused, with the system's reas
 }
 
 }  // namespace
+
+}  // namespace frames_tests

@@ -12,6 +12,8 @@
 #include <vtkJPEGReader.h>
 #include <vtkNew.h>
 
+namespace image_file_tests {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,3 +89,5 @@ TEST("what is no picture gives no JPEG") {
 }
 
 }  // namespace
+
+}  // namespace image_file_tests

@@ -10,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+namespace run_log_tests {
+
 namespace {
 
 using weir::test::fake_simulation;
@@ -115,3 +117,5 @@ TEST("a file that cannot be replaced still says what happened: the status is set
 }
 
 }  // namespace
+
+}  // namespace run_log_tests

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iterator>
 
+namespace step_rows_tests {
+
 namespace {
 
 using weir::real;
@@ -107,3 +109,5 @@ TEST("a pass that is timed for the first time later has a column, empty before; 
 }
 
 }  // namespace
+
+}  // namespace step_rows_tests

@@ -20,6 +20,8 @@
 
 #include <sys/resource.h>
 
+namespace vtk_file_tests {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,3 +222,5 @@ TEST("what the first rank cannot write is an error of all; what stood there stay
 }
 
 }  // namespace
+
+}  // namespace vtk_file_tests

@@ -17,6 +17,8 @@
 #include <vtkCellData.h>
 #include <vtkPointData.h>
 
+namespace vtk_read_tests {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -180,3 +182,5 @@ TEST("corners of cells that are no points are refused") {
             EXPECT_EQ(outcome(files.points), 0) << list << ' ' << corner;
         }
 }
+
+}  // namespace vtk_read_tests

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace grid_tests {
+
 using namespace weir;
 
 TEST_IN_2D_AND_3D("x runs fastest, and strides lead to neighbours") {
@@ -43,3 +45,5 @@ TEST_IN_2D_AND_3D("a loop over a box visits each index once") {
     EXPECT_EQ(inside, std::pow(4, D));
     EXPECT_EQ(max_over<D>(seen.extent(), [&](const Index<D>& I) { return seen(I); }), 1);
 }
+
+}  // namespace grid_tests

@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace weir {
+namespace weir::plane_store_tests {
 
 namespace {
 
@@ -165,4 +165,4 @@ TEST("an array that has not the planes of the cut is whole, as all are without d
 
 }  // namespace
 
-}  // namespace weir
+}  // namespace weir::plane_store_tests

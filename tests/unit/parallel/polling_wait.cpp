@@ -4,6 +4,8 @@
 
 #include "support/test.hpp"
 
+namespace polling_wait_tests {
+
 namespace {
 
 using std::chrono::microseconds;
@@ -68,3 +70,5 @@ TEST("a poll that loses the processor is the last for a second: waits sleep at o
 }
 
 }  // namespace
+
+}  // namespace polling_wait_tests

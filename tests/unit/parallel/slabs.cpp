@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-namespace weir {
+namespace weir::slabs_tests {
 
 namespace {
 
@@ -200,4 +200,4 @@ TEST("of forked ranks that fail the cause is told, not its consequences") {
     EXPECT_EQ(cause_of_failure(fork_ranks(2, [](ForkedRanks&) { return std::string("done"); })), nullptr);
 }
 
-}  // namespace weir
+}  // namespace weir::slabs_tests

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace weir {
+namespace weir::heat_tests {
 namespace {
 
 using particles::LatticeSums;
@@ -304,4 +304,4 @@ TEST("a wall that exchanges heat and the slab behind it resist one after the oth
 }
 
 }  // namespace
-}  // namespace weir
+}  // namespace weir::heat_tests

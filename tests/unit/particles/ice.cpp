@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace weir {
+namespace weir::ice_tests {
 namespace {
 
 constexpr real spacing = 0.1;  // [m]
@@ -114,4 +114,4 @@ TEST_IN_2D_AND_3D("a solid that stops one end of a piece of ice turns it, by the
     }
 }
 
-}  // namespace weir
+}  // namespace weir::ice_tests

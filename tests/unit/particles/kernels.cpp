@@ -9,6 +9,8 @@
 
 #include <functional>
 
+namespace kernels_tests {
+
 using namespace weir;
 using namespace weir::particles;
 
@@ -120,3 +122,5 @@ TEST_IN_2D_AND_3D("lattice sums agree with the reference table to 1e-6") {
     }
     EXPECT_EQ(rows, 8);
 }
+
+}  // namespace kernels_tests

@@ -14,6 +14,8 @@
 #include <random>
 #include <set>
 
+namespace migration_tests {
+
 using namespace weir;
 using namespace weir::particles;
 
@@ -284,3 +286,5 @@ TEST("a position that is not finite on one rank fails all of them") {
 }
 
 }  // namespace
+
+}  // namespace migration_tests

@@ -15,6 +15,8 @@
 #include <random>
 #include <set>
 
+namespace pairs_tests {
+
 using namespace weir;
 using namespace weir::particles;
 
@@ -223,3 +225,5 @@ TEST_IN_2D_AND_3D("brute force, grid and sorted grid give the same lists, and th
         }
     set_threads(2);
 }
+
+}  // namespace pairs_tests

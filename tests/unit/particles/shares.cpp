@@ -10,6 +10,8 @@
 #include <random>
 #include <set>
 
+namespace shares_tests {
+
 using namespace weir;
 using namespace weir::particles;
 
@@ -192,3 +194,5 @@ TEST("more ranks than cells with particles: some have none, and all are somebody
 }
 
 }  // namespace
+
+}  // namespace shares_tests

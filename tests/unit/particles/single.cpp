@@ -14,7 +14,7 @@ namespace {
 #define FNMA(a, b, c) std::fma(-(a), (b), (c))
 #include "particles/kernels/single.inl"
 
-}  // namespace
+namespace single_tests {}  // namespace single_tests
 
 TEST("one over a square root is right to 1.5e-6, for every mantissa, and from 1e-36 to 1e36") {
     const auto error = [](float x) { return std::abs(static_cast<double>(inverse_root(x)) * std::sqrt(static_cast<double>(x)) - 1); };
@@ -26,3 +26,5 @@ TEST("one over a square root is right to 1.5e-6, for every mantissa, and from 1e
     EXPECT_GE(worst, 1.2e-6);
     for (const float x : {1e-36f, 1e-20f, 1e-6f, 1e6f, 1e12f, 1e36f}) EXPECT_LE(error(x), 1.5e-6) << x;
 }
+
+}  // namespace

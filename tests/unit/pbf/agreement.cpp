@@ -4,6 +4,8 @@
 
 #include "support/test.hpp"
 
+namespace agreement_tests {
+
 using namespace weir;
 using test::disturb;
 using test::Expected;
@@ -59,3 +61,5 @@ TEST_IN_2D_AND_3D("a restart from a checkpoint continues bit for bit") {
     EXPECT_EQ(through->fluid().v, second->fluid().v);
     EXPECT_EQ(through->fluid().id, second->fluid().id);
 }
+
+}  // namespace agreement_tests

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace artificial_pressure_tests {
+
 using namespace weir;
 
 namespace {
@@ -99,3 +101,5 @@ TEST_IN_2D_AND_3D("artificial pressure pushes two particles apart by the fourth 
             }
         }
 }
+
+}  // namespace artificial_pressure_tests

@@ -4,6 +4,8 @@
 
 #include "support/test.hpp"
 
+namespace robustness_tests {
+
 using namespace weir;
 using particles::Fluid;
 
@@ -240,3 +242,5 @@ TEST_IN_2D_AND_3D("what walls put back is counted once, beside a side that repea
     solver->step(0.008);
     EXPECT_EQ(integral(*solver, "clamped"), 1);
 }
+
+}  // namespace robustness_tests

@@ -4,6 +4,8 @@
 #include "problems.hpp"
 #include "support/test.hpp"
 
+namespace low_rank_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -101,3 +103,5 @@ TEST_IN_2D_AND_3D("columns on top of a matrix without air, or of a method that k
         EXPECT_EQ(solver->solve(p, b, random_columns<D>(A, 1)), nullptr) << method;
     }
 }
+
+}  // namespace low_rank_tests

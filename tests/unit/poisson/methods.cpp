@@ -10,6 +10,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace methods_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -309,3 +311,5 @@ TEST("modified incomplete Cholesky gains on the diagonal as grids grow") {
     const auto gain = [&](int n) { return iterations("cg_jacobi", n) / iterations("cg_mic0", n); };
     EXPECT_GT(gain(160) / gain(40), 1.1) << gain(40) << " " << gain(160);
 }
+
+}  // namespace methods_tests

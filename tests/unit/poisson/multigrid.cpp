@@ -6,6 +6,8 @@
 #include "support/count_allocations.hpp"
 #include "support/test.hpp"
 
+namespace multigrid_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -198,3 +200,5 @@ TEST_IN_2D_AND_3D("a guess that is the answer takes no iteration, and a near one
     for (std::size_t i = 0; i < p.size(); ++i) p[i] *= 1 + 1e-4;
     EXPECT_LT(solver->solve(p, b).iterations, cold);
 }
+
+}  // namespace multigrid_tests

@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace advection_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -81,3 +83,5 @@ TEST("a point carried by each flow for its period comes back; after a quarter tu
     EXPECT_NEAR(norm(unturned(quarter, 0.25) - x0), 0, 1e-10);
     EXPECT_NEAR(gaussian_hill(unturned(quarter, 0.25)), gaussian_hill(x0), 1e-10);
 }
+
+}  // namespace advection_tests

@@ -3,6 +3,8 @@
 #include "support/test.hpp"
 #include "validation/references/table.hpp"
 
+namespace drops_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -37,3 +39,5 @@ TEST("the rotating patch: lap p = 2 rho omega^2, no pressure on the sides, the p
     EXPECT_NEAR(rotating_patch_pressure(0.5, 0.3), 0, 1e-12);
     EXPECT_NEAR(rotating_patch_pressure(0, 0), -0.1473427, 1e-6);
 }
+
+}  // namespace drops_tests

@@ -7,6 +7,8 @@
 
 #include <functional>
 
+namespace exact_flows_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -107,3 +109,5 @@ TEST("early Couette flow is Stokes' first problem: U erfc(distance from the lid 
     const real H = 1, U = 1, nu = 0.1, t = 0.02;  // the far wall is felt by erfc(H / (2 sqrt(nu t))) = erfc(11)
     for (real d : {0.02, 0.05, 0.1}) EXPECT_NEAR(couette_startup(H - d, t, H, U, nu), std::erfc(d / (2 * std::sqrt(nu * t))), 1e-12);
 }
+
+}  // namespace exact_flows_tests

@@ -6,6 +6,8 @@
 #include <gsl/gsl_sf_dawson.h>
 #include <gsl/gsl_sf_erf.h>
 
+namespace faddeeva_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -44,3 +46,5 @@ TEST("mirror z -> -conj(z) conjugates it, and far away it is i/(sqrt(pi) z)") {
     const Complex z(300, 200);
     EXPECT_NEAR(std::abs(faddeeva(z) * z * std::sqrt(pi) / Complex(0, 1) - 1.0), 0, 1 / std::norm(z));  // next term 1/(2 z^2)
 }
+
+}  // namespace faddeeva_tests

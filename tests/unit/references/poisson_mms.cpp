@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace poisson_mms_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -101,3 +103,5 @@ TEST("the 5/7-point formula solved by over-relaxation gives the discrete errors 
 }
 
 TEST("an unknown problem is refused with the list of known ones") { EXPECT_THROW(poisson_problem("N4"), BadInput); }
+
+}  // namespace poisson_mms_tests

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+namespace published_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -73,3 +75,5 @@ TEST("heated cavity: de Vahl Davis and the own solve agree within 0.1%") {
         EXPECT_NEAR(rows.number(0, "Nu_mean") / rows.number(1, "Nu_mean"), 1, 1e-3);
     }
 }
+
+}  // namespace published_tests

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace shallow_water_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -94,3 +96,5 @@ TEST("Thacker's planar bowl: the depths and velocities of the table") {
     }
     EXPECT_GT(wet, 50);
 }
+
+}  // namespace shallow_water_tests

@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+namespace table_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -37,3 +39,5 @@ TEST("what is missing, ragged, empty or not a number is bad input") {
     EXPECT_THROW(t.number(0, "b"), BadInput);
     EXPECT_THROW(t.number(0, "c"), BadInput);
 }
+
+}  // namespace table_tests

@@ -4,6 +4,8 @@
 #include "support/test.hpp"
 #include "validation/references/table.hpp"
 
+namespace waves_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -34,3 +36,5 @@ TEST("dispersion: deep water g k, shallow water g d k^2, ripples sigma k^3") {
     EXPECT_NEAR(wave_frequency(0, 3, 50, 0.07), std::sqrt(0.07 * 27), 1e-12);
     EXPECT_EQ(wave_frequency(9.81, 2, 50), wave_frequency(9.81, 2, 50, 0));
 }
+
+}  // namespace waves_tests

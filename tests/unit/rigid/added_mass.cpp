@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace added_mass_tests {
+
 using namespace weir;
 using namespace weir::rigid;
 
@@ -98,3 +100,5 @@ TEST("a body that dips deeper keeps what is known of it, in units of its wet sur
     EXPECT_EQ(known.of(0)[0][0], 1);
     EXPECT_EQ(known.of(0)[0][1], 0);
 }
+
+}  // namespace added_mass_tests

@@ -1,6 +1,8 @@
 // What a scene says of bodies becomes bodies; what cannot be is refused.
 #include "support.hpp"
 
+namespace bodies_tests {
+
 using namespace weir;
 using namespace weir::rigid;
 using namespace weir::test;
@@ -140,3 +142,5 @@ TEST_IN_2D_AND_3D("a checkpoint brings bodies back bit for bit") {
     EXPECT_EQ(one[0].orientation, two[0].orientation);
     EXPECT_EQ(one[0].velocity, two[0].velocity);
 }
+
+}  // namespace bodies_tests

@@ -1,6 +1,8 @@
 // Bodies against walls, solids and each other, without any fluid: bounces, rest, friction, momentum.
 #include "support.hpp"
 
+namespace contacts_tests {
+
 using namespace weir;
 using namespace weir::rigid;
 using namespace weir::test;
@@ -120,3 +122,5 @@ TEST_IN_2D_AND_3D("what lies on the floor does not bounce, however lively") {
     for (int i = 0; i < 200; ++i) world.step(2e-3), fastest = std::max(fastest, std::abs(world.bodies[0].velocity[1]));
     EXPECT_LT(fastest, 1e-9);  // a bounce by the fall of a step would be 0.9 g dt, 1.8e-2 m/s
 }
+
+}  // namespace contacts_tests

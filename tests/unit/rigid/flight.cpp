@@ -3,6 +3,8 @@
 
 #include <random>
 
+namespace flight_tests {
+
 using namespace weir;
 using namespace weir::rigid;
 using namespace weir::test;
@@ -98,3 +100,5 @@ TEST("what a scene fixes stays: no way along an axis, no turning") {
     EXPECT_EQ(bodies[0].orientation[0], 0.0);
     EXPECT_NEAR(bodies[0].at[1], 1.3, 1e-15);
 }
+
+}  // namespace flight_tests

@@ -4,6 +4,8 @@
 #include "core/checkpoint.hpp"
 #include "support.hpp"
 
+namespace joints_tests {
+
 using namespace weir;
 using namespace weir::rigid;
 using namespace weir::test;
@@ -261,3 +263,5 @@ TEST_IN_2D_AND_3D("a chain of joints goes on from a checkpoint bit for bit") {
     }
     EXPECT_GT(norm(whole.bodies[1].at - chain<D>().bodies[1].at), 0.01);  // it has moved
 }
+
+}  // namespace joints_tests

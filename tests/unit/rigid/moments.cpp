@@ -7,6 +7,8 @@
 #include <fstream>
 #include <random>
 
+namespace moments_tests {
+
 using namespace weir;
 using namespace weir::rigid;
 using namespace weir::test;
@@ -106,3 +108,5 @@ TEST("a half space and a wave have no end") {
     EXPECT_FALSE(bounds_of<2>(shape_table(2, "shape = \"plane\", point = [0, 0], normal = [0, 1]")).finite());
     EXPECT_FALSE(bounds_of<2>(shape_table(2, "shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1.0")).finite());
 }
+
+}  // namespace moments_tests

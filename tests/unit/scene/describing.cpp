@@ -3,6 +3,8 @@
 #include "support/test.hpp"
 #include "unit/scene/schema.hpp"
 
+namespace describing_tests {
+
 using namespace weir;
 using scene::made_up::schemas;
 
@@ -78,3 +80,5 @@ TEST("the manual has a section for every key, shape, motion, solver and effect")
         for (const auto& e : s.effects) EXPECT_TRUE(says(text, ("#### `" + e.name + "`").c_str())) << e.name;
     }
 }
+
+}  // namespace describing_tests

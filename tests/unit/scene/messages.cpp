@@ -3,6 +3,8 @@
 #include "support/test.hpp"
 #include "unit/scene/schema.hpp"
 
+namespace messages_tests {
+
 using namespace weir;
 using namespace weir::scene;
 
@@ -122,3 +124,5 @@ TEST("a file with a byte order mark or Windows line ends is a file like any othe
     for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2) windows.insert(at, "\r");
     EXPECT_EQ(parse(windows, "scene.toml", made_up::schemas()).number("time.end"), 1);
 }
+
+}  // namespace messages_tests

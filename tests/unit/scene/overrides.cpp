@@ -1,6 +1,8 @@
 #include "support/test.hpp"
 #include "unit/scene/schema.hpp"
 
+namespace overrides_tests {
+
 using namespace weir;
 using namespace weir::scene;
 
@@ -118,3 +120,5 @@ TEST("an override on the command line is key=value") {
     EXPECT_THROW((void)to_override("grid.cells"), BadInput);
     EXPECT_THROW((void)to_override("=3"), BadInput);
 }
+
+}  // namespace overrides_tests

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+namespace reading_tests {
+
 using namespace weir;
 using namespace weir::scene;
 
@@ -162,3 +164,5 @@ TEST("any TOML can be read against any keys, not only scenes") {
     EXPECT_EQ(table.number("at_most"), 2);
     EXPECT_THROW((void)parse_table("wy = \"x\"\n", "case.toml", keys), BadScene);
 }
+
+}  // namespace reading_tests

@@ -1,6 +1,8 @@
 #include "support/test.hpp"
 #include "unit/scene/schema.hpp"
 
+namespace rules_tests {
+
 using namespace weir;
 using namespace weir::scene;
 
@@ -103,3 +105,5 @@ TEST("a rule says nothing about values that are refused already") {
               "solids[1] must be a table with a \"shape\"; found the integer 3",
               "solids[2].max is not above its min along y: -1 m against 0 m"}));
 }
+
+}  // namespace rules_tests

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace advection_schemes_tests {
+
 namespace {
 
 using weir::real;
@@ -80,3 +82,5 @@ TEST("conservative transport is of third order in time") {
     EXPECT_GT(coarse, 7 * fine);
     EXPECT_LT(coarse, 9 * fine);
 }
+
+}  // namespace advection_schemes_tests

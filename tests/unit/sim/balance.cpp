@@ -7,6 +7,8 @@
 
 #include <functional>
 
+namespace balance_tests {
+
 namespace {
 
 using weir::Integral;
@@ -173,3 +175,5 @@ TEST("the largest divergence of any step is kept, and nothing is invented where 
 }
 
 }  // namespace
+
+}  // namespace balance_tests

@@ -13,6 +13,8 @@
 #include <fstream>
 #include <iterator>
 
+namespace brush_tests {
+
 namespace {
 
 using namespace weir;
@@ -372,3 +374,5 @@ TEST("devices and the reference refuse the brush by name, and keyframes that say
 }
 
 }  // namespace
+
+}  // namespace brush_tests

@@ -16,6 +16,8 @@
 #include <sstream>
 #include <utility>
 
+namespace crafted_checkpoints_tests {
+
 using namespace weir;
 namespace fs = std::filesystem;
 
@@ -166,3 +168,5 @@ TEST("any block of tall cells may be crafted") { expect_harmless("ranks_tall"); 
 TEST("any block of shallow water may be crafted") { expect_harmless("ranks_shallow", "[12, 1, 14]"); }
 TEST("any block of columns may be crafted") { expect_harmless("ranks_columns"); }
 TEST("any block of waves may be crafted") { expect_harmless("ranks_waves", "[15, 1, 22]"); }
+
+}  // namespace crafted_checkpoints_tests

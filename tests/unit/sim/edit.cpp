@@ -10,6 +10,8 @@
 #include <iterator>
 #include <numeric>
 
+namespace edit_tests {
+
 namespace {
 
 using namespace weir;
@@ -425,3 +427,5 @@ TEST("a scene made in code is the scene of its text, and refused as that is") {
 }
 
 }  // namespace
+
+}  // namespace edit_tests

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+namespace exact_probes_tests {
+
 namespace {
 
 using weir::real;
@@ -181,3 +183,5 @@ TEST("a gauge's height is above the domain's floor, wherever that lies") {
     water.run_until(0.002);
     EXPECT_NEAR(last(water, 0), 0.5, 1e-9);  // still water stays still to the pressure's tolerance
 }
+
+}  // namespace exact_probes_tests

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iterator>
 
+namespace loop_tests {
+
 namespace {
 
 using weir::real;
@@ -203,3 +205,5 @@ TEST("probe files appended to step by step equal those written at once, and hold
 }
 
 }  // namespace
+
+}  // namespace loop_tests

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+namespace particle_surface_tests {
+
 namespace {
 
 using weir::FieldSet;
@@ -138,3 +140,5 @@ TEST_IN_2D_AND_3D("a front is half a spacing beyond the farthest particle, and n
 }
 
 }  // namespace
+
+}  // namespace particle_surface_tests

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace probes_tests {
+
 namespace {
 
 using weir::real;
@@ -279,3 +281,5 @@ TEST_IN_2D_AND_3D("still water of particles stays as high as it is deep, and a s
 }
 
 }  // namespace
+
+}  // namespace probes_tests

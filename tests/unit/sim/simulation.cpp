@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+namespace simulation_tests {
+
 namespace {
 
 using weir::real;
@@ -310,3 +312,5 @@ TEST("a run goes on until a finite time: NaN and infinity are refused at once, a
     EXPECT_THROW(simulation.step_until(weir::not_applicable), weir::BadInput);
     EXPECT_EQ(simulation.steps(), 0);
 }
+
+}  // namespace simulation_tests

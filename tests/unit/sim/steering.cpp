@@ -12,6 +12,8 @@
 #include <fstream>
 #include <iterator>
 
+namespace steering_tests {
+
 namespace {
 
 using namespace weir;
@@ -204,3 +206,5 @@ TEST("a scene written from what it gives reads as the same scene: all that come 
 }
 
 }  // namespace
+
+}  // namespace steering_tests

@@ -6,6 +6,8 @@
 
 #include <vector>
 
+namespace thread_choice_tests {
+
 namespace {
 
 using weir::sim::StepTime;
@@ -70,3 +72,5 @@ TEST("who measures the time of steps is not disturbed by trials") {
 }
 
 }  // namespace
+
+}  // namespace thread_choice_tests

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+namespace watching_tests {
+
 namespace {
 
 using namespace weir;
@@ -133,3 +135,5 @@ TEST("a run continued from the checkpoint at its end is bit for bit the run that
 }
 
 }  // namespace
+
+}  // namespace watching_tests

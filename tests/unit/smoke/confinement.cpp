@@ -5,7 +5,7 @@
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
-namespace weir::smoke {
+namespace weir::smoke::confinement_tests {
 
 namespace {
 
@@ -62,4 +62,4 @@ TEST_IN_2D_AND_3D("vorticity confinement pushes every inner face by the mean of 
         });
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::confinement_tests

@@ -4,7 +4,7 @@
 
 #include "core/parallel.hpp"
 
-namespace weir::smoke {
+namespace weir::smoke::determinism_tests {
 
 namespace {
 
@@ -148,4 +148,4 @@ TEST_IN_2D_AND_3D("over many steps the asymmetry is that of the pressure solver'
     }
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::determinism_tests

@@ -5,7 +5,7 @@
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
-namespace weir::smoke {
+namespace weir::smoke::effects_tests {
 
 namespace {
 
@@ -88,4 +88,4 @@ TEST_IN_2D_AND_3D("explicit friction is advised its limit of a fluid at rest: 1 
     EXPECT_NEAR(flow.advised_dt(), 1 / (2 * 0.5 * D * 64), 1e-15);
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::effects_tests

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace weir::smoke {
+namespace weir::smoke::heat_tests {
 
 namespace {
 
@@ -492,4 +492,4 @@ TEST("without a substance no face has a mobility and no field is derived") {
     for (const auto& field : flow.state().fields) EXPECT_FALSE(field.derived);
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::heat_tests

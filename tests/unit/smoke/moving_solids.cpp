@@ -4,6 +4,8 @@
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
+namespace moving_solids_tests {
+
 using namespace weir;
 using namespace weir::smoke;
 
@@ -117,3 +119,5 @@ TEST("a solid that moves through a periodic side leaves the flow that it leaves 
     EXPECT_GT(fastest, 0.2);
     EXPECT_LT(apart, 0.02 * fastest);
 }
+
+}  // namespace moving_solids_tests

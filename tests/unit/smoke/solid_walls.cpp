@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+namespace solid_walls_tests {
+
 using namespace weir;
 using namespace weir::smoke;
 
@@ -261,3 +263,5 @@ TEST_IN_2D_AND_3D("conservative advection beside a solid does not feed the flow"
         EXPECT_LE(integral_of(flow, "kinetic_energy"), first) << shape;
     }
 }
+
+}  // namespace solid_walls_tests

@@ -3,7 +3,7 @@
 #include "support/grid_solvers.hpp"
 #include "support/test.hpp"
 
-namespace weir::smoke {
+namespace weir::smoke::steady_tests {
 
 namespace {
 
@@ -132,4 +132,4 @@ TEST("along paths a steady state depends on the step at order 2 with MacCormack,
     EXPECT_GE(order("advection = \"semi_lagrangian\"", cooled), 0.8);
 }
 
-}  // namespace weir::smoke
+}  // namespace weir::smoke::steady_tests

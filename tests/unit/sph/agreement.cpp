@@ -5,6 +5,8 @@
 
 #include "support/test.hpp"
 
+namespace agreement_tests {
+
 using namespace weir;
 using particles::Fluid;
 using test::all_physics;
@@ -192,3 +194,5 @@ TEST("elastic energy is the work of compression: the integral of p / rho^2, whic
                 EXPECT_NEAR(o.elastic_energy(rho, rho0), sum, 1e-9 * (std::abs(sum) + 1e-3)) << gamma << ' ' << tension << ' ' << rho;
             }
 }
+
+}  // namespace agreement_tests

@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace rest_tests {
+
 using namespace weir;
 
 namespace {
@@ -91,3 +93,5 @@ TEST("the wall below a column ten times as high as wide feels its weight from th
         ASSERT_NEAR(deepest(), expected, 0.1 * expected) << step;
     }
 }
+
+}  // namespace rest_tests

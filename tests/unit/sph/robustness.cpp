@@ -7,6 +7,8 @@
 
 #include <limits>
 
+namespace robustness_tests {
+
 using namespace weir;
 using particles::Fluid;
 
@@ -164,3 +166,5 @@ TEST_IN_2D_AND_3D("a checkpoint continues bit for bit, density by continuity inc
     EXPECT_EQ(second.fluid().x, whole.fluid().x);
     EXPECT_EQ(second.fluid().density, whole.fluid().density);
 }
+
+}  // namespace robustness_tests

@@ -3,6 +3,8 @@
 #include "support/test.hpp"
 #include "surfaces/reference.hpp"
 
+namespace fields_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -113,3 +115,5 @@ TEST("a particle of a plane surface stays, and a profile tells the depth below a
         }
     }
 }
+
+}  // namespace fields_tests

@@ -6,6 +6,8 @@
 
 #include <numbers>
 
+namespace flat_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -205,3 +207,5 @@ TEST("flat: a level set's surface is its zero, closed at the walls") {
     EXPECT_NEAR(volume(mesh), 2.4 * 1.03 - (2 * 0.5 * 0.5 + 2 * 0.5 * 0.8) / 2 * 0.01, 1e-6);  // single precision of 24 cells
     for (const Vec<3>& v : mesh.velocity) EXPECT_NEAR(norm(v - Vec<3>{{2, 2, 0}}), 0, 1e-14);
 }
+
+}  // namespace flat_tests

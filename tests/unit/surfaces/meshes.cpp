@@ -7,6 +7,8 @@
 
 #include <numbers>
 
+namespace meshes_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -113,3 +115,5 @@ TEST("the thickness of a slab is its height") {
     }
     EXPECT_GT(seen, 500);
 }
+
+}  // namespace meshes_tests

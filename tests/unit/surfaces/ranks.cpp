@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace ranks_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -280,3 +282,5 @@ TEST("no liquid at all, and a position that is not a number: all ranks say the s
         EXPECT_THROW(maker.make_part(fields, 0), NumericalFailure);
     });
 }
+
+}  // namespace ranks_tests

@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+namespace surfaces_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -212,3 +214,5 @@ TEST("where a scene names no surface, none is made, and nothing is allocated") {
     EXPECT_EQ(test::allocations - before, 0);
     EXPECT_NE(reconstruction_of(scene_of(48, "output.surface = \"density\"\n")), nullptr);
 }
+
+}  // namespace surfaces_tests

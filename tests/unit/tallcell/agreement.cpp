@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace weir::test {
+namespace weir::test::agreement_tests {
 namespace {
 
 /// The height of the surface over each column, in cells from the bottom.
@@ -79,4 +79,4 @@ TEST("a column of water that collapses has its surface within a cell of the unif
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::agreement_tests

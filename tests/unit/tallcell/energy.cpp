@@ -2,7 +2,7 @@
 #include "support/test.hpp"
 #include "tallcell/solver.hpp"
 
-namespace weir::test {
+namespace weir::test::energy_tests {
 namespace {
 
 /// Of motion and of the surface above where its volume stands at rest, a metre wide [J/m].
@@ -69,4 +69,4 @@ solids = [ { shape = "box", min = [0.125, )" + low + R"(], max = [0.875, )" +
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::energy_tests

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace weir::test {
+namespace weir::test::multigrid_tests {
 namespace {
 
 template <int D>
@@ -68,4 +68,4 @@ TEST_IN_2D_AND_3D("around periodic axes with an odd number of columns a cycle kn
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::multigrid_tests

@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace weir::test {
+namespace weir::test::overhang_tests {
 namespace {
 
 using namespace tallcell;
@@ -113,4 +113,4 @@ TEST_IN_2D_AND_3D("a heap of water stands over air on a ledge, and falls past it
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::overhang_tests

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace weir::test {
+namespace weir::test::pockets_tests {
 namespace {
 
 /// Deep water with a box of liquid 3 cells wide and 8 high in a shell of solid cells, on the floor or above it.
@@ -82,4 +82,4 @@ TEST_IN_2D_AND_3D("pockets change nothing where there is none, to the last bit")
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::pockets_tests

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace weir::test {
+namespace weir::test::pressure_tests {
 namespace {
 
 constexpr real round_off = 1e-11;  // 2^-53 times the some ten thousand terms that sums over a basin have, conditioned as its matrix is
@@ -162,4 +162,4 @@ TEST_IN_2D_AND_3D("other knots take over a flow without divergence: none appears
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::pressure_tests

@@ -2,7 +2,7 @@
 // in double precision and written down as the definitions stand.
 #include "support.hpp"
 
-namespace weir::test {
+namespace weir::test::reference_tests {
 namespace {
 
 using Dense = std::vector<std::vector<real>>;
@@ -158,4 +158,4 @@ TEST_IN_2D_AND_3D("matrix, projection and pressure are what plain elimination ma
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::reference_tests

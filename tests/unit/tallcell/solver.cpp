@@ -9,7 +9,7 @@
 #include <numeric>
 #include <utility>
 
-namespace weir::test {
+namespace weir::test::solver_tests {
 namespace {
 
 using namespace tallcell;
@@ -166,4 +166,4 @@ TEST("single and stacked columns have far fewer unknowns than the lattice has li
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::solver_tests

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace weir::test {
+namespace weir::test::transport_tests {
 namespace {
 
 /// Deep water, level, whose columns all have elements of 2, 4, 8, 16, 3, 1 rows above one another.
@@ -176,4 +176,4 @@ TEST_IN_2D_AND_3D("water at rest on tall cells changes by nothing") {
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::transport_tests

@@ -3,6 +3,8 @@
 #include "support/test.hpp"
 #include "thermo/substance.hpp"
 
+namespace constants_tests {
+
 using namespace weir;
 using namespace weir::thermo;
 
@@ -102,3 +104,5 @@ TEST("constants that no substance has are refused by name") {
     EXPECT_EQ(first([](auto& k) { k.fusion = 10; }),
               "fusion lets the solid melt at 3.4263e+14 K under the critical pressure, above the critical 700 K");
 }
+
+}  // namespace constants_tests

@@ -4,6 +4,8 @@
 #include "support/test.hpp"
 #include "thermo/substance.hpp"
 
+namespace gases_tests {
+
 using namespace weir;
 using namespace weir::thermo;
 
@@ -96,3 +98,5 @@ TEST("a liquid boils at its pressure, above the critical one it does not") {
     EXPECT_THROW(van_der_waals(R, {0, 1e5}, liquid, vapour), BadInput);
     EXPECT_THROW(ideal_gas(0, vapour), BadInput);
 }
+
+}  // namespace gases_tests

@@ -4,6 +4,8 @@
 #include "support/test.hpp"
 #include "thermo/substance.hpp"
 
+namespace heat_curve_tests {
+
 using namespace weir;
 using namespace weir::thermo;
 
@@ -75,3 +77,5 @@ TEST("without latent heat there is no plateau, and no division by it") {
     EXPECT_EQ(curve.temperature(0), 300);
     EXPECT_EQ(curve.temperature(4000), 301);
 }
+
+}  // namespace heat_curve_tests

@@ -4,6 +4,8 @@
 #include "support/test.hpp"
 #include "thermo/substance.hpp"
 
+namespace water_tests {
+
 using namespace weir;
 using namespace weir::thermo;
 
@@ -196,3 +198,5 @@ TEST("the state is that of the heat curve at the same pressure, beside every lin
             EXPECT_EQ(curve.share(water()->state({T, p}), curve.warmth(curve.enthalpy(T))), 1) << T << " K, " << p << " Pa";
         }
 }
+
+}  // namespace water_tests

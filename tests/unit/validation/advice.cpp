@@ -3,7 +3,7 @@
 #include "validation/cost/rank.hpp"
 #include "validation/cost/tables.hpp"
 
-namespace weir::validation {
+namespace weir::validation::advice_tests {
 namespace {
 
 CostPoint point(const std::string& method, real error, double seconds) {
@@ -62,4 +62,4 @@ TEST("one configuration is compared with no other, and one repeat has no spread"
 }
 
 }  // namespace
-}  // namespace weir::validation
+}  // namespace weir::validation::advice_tests

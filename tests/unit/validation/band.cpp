@@ -4,6 +4,8 @@
 #include "core/error.hpp"
 #include "support/test.hpp"
 
+namespace band_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -76,3 +78,5 @@ TEST("of more grids the finest three count") {
     grids.insert(grids.begin(), {0.1, {100}});
     EXPECT_EQ(band(grids, 1).width, three);
 }
+
+}  // namespace band_tests

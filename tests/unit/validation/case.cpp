@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace case_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -142,3 +144,5 @@ variants = [ { name = "a b" }, { name = "c" }, { name = "c" } ]
 )",
                    "two variants are called \"c\"");
 }
+
+}  // namespace case_tests

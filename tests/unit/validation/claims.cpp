@@ -11,6 +11,8 @@
 #include <map>
 #include <sstream>
 
+namespace claims_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -118,3 +120,5 @@ TEST("a case with a published error that grows under refinement says so: it clai
         }
     });
 }
+
+}  // namespace claims_tests

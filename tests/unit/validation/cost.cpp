@@ -17,6 +17,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
+namespace cost_tests {
+
 using namespace weir;
 using namespace weir::validation;
 namespace fs = std::filesystem;
@@ -329,3 +331,5 @@ TEST("the report's figures stand beside ours: frames a second of whole steps, mi
     EXPECT_NE(page.find("The report: theirs. Weir: commit"), std::string::npos) << "both machines are named";
     EXPECT_NO_THROW(read_report_table(fs::path(WEIR_SOURCE_DIR) / "cases/report_table"));
 }
+
+}  // namespace cost_tests

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weir::validation {
+namespace weir::validation::cost_estimate_tests {
 namespace {
 
 scene::Scene scene_of(const scene::SolverKind& kind, int dim) { return plain_scene(kind, dim, dim == 2 ? 96 : 32); }
@@ -106,4 +106,4 @@ TEST("messages of a large scene are counted on a copy, and bytes between neighbo
     EXPECT_NEAR(bytes_per_iteration(o.sent[0], o.iterations) / bytes_per_iteration(whole.sent[0], whole.iterations), 1, 0.25);
 }
 
-}  // namespace weir::validation
+}  // namespace weir::validation::cost_estimate_tests

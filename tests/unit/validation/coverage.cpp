@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace coverage_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -135,3 +137,5 @@ TEST("an exact series has the name and the interval of the recorded one") {
     EXPECT_NEAR(exact.curve.x.back(), 2, 1e-15);
     EXPECT_NEAR(interpolate(exact.curve, 1.25), 3.25, 1e-12);
 }
+
+}  // namespace coverage_tests

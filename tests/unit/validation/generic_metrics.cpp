@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace generic_metrics_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -128,3 +130,5 @@ TEST("a metric that the run or the reference cannot answer is refused by name") 
     EXPECT_NO_THROW(check_metric("velocity.l2", s.run, exact()));
     EXPECT_NO_THROW(check_metric("divergence.max", s.run, {}));
 }
+
+}  // namespace generic_metrics_tests

@@ -6,6 +6,8 @@
 #include "support/test.hpp"
 #include "validation/uncertainty/other_influences.hpp"
 
+namespace ladder_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -111,3 +113,5 @@ TEST("twins part where their means differ by a twentieth of the range") {
     EXPECT_FALSE(time_of_parting(one, one).has_value());
     EXPECT_FALSE(time_of_parting(one, twin, 3).has_value()) << "below that, a series is round-off";
 }
+
+}  // namespace ladder_tests

@@ -19,7 +19,7 @@
 
 #include <fmt/format.h>
 
-namespace weir {
+namespace weir::memory_estimate_tests {
 namespace {
 
 /// What a guard against running out of memory can be off by and still be of use.
@@ -174,4 +174,4 @@ TEST_IN_2D_AND_3D("frames take on the disk what is estimated for them, without c
     }
 }
 
-}  // namespace weir
+}  // namespace weir::memory_estimate_tests

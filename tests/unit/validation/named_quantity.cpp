@@ -4,6 +4,8 @@
 #include "core/error.hpp"
 #include "support/test.hpp"
 
+namespace named_quantity_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -123,3 +125,5 @@ TEST("units of times and ratios") {
     EXPECT_EQ(unit_of(parse_quantity("a.period"), "m"), "s");
     EXPECT_EQ(unit_of(parse_quantity("a.drift"), "m"), "");
 }
+
+}  // namespace named_quantity_tests

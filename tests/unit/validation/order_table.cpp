@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace order_table_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -93,3 +95,5 @@ TEST("what cannot be said is NaN: one grid, equal values, a zero or NaN error") 
     broken.add(2, std::nan("")), broken.add(1, 0.1);
     EXPECT_TRUE(std::isnan(broken.order()));
 }
+
+}  // namespace order_table_tests

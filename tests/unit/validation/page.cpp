@@ -15,6 +15,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
+namespace page_tests {
+
 using namespace weir::validation;
 using nlohmann::json;
 namespace fs = std::filesystem;
@@ -196,3 +198,5 @@ TEST("the README's results are written between its markers, the rest stays, and 
     std::ofstream(readme) << "no markers";
     EXPECT_THROW(update_readme(readme, folder.path()), weir::BadInput);
 }
+
+}  // namespace page_tests

@@ -7,6 +7,8 @@
 
 #include "support/test.hpp"
 
+namespace pins_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -48,3 +50,5 @@ TEST("numbers of another processor, and those that are not there, are not compar
     EXPECT_EQ(compare_numbers({{"steps", 2}}, nlohmann::json()).not_compared, "none are published");
     EXPECT_EQ(compare_numbers({{"steps", 2}}, nlohmann::json{{"numbers", 3}}).not_compared, "none are published");
 }
+
+}  // namespace pins_tests

@@ -12,6 +12,8 @@
 #include "support/fake_solver.hpp"
 #include "support/test.hpp"
 
+namespace pipeline_tests {
+
 using namespace weir;
 using namespace weir::validation;
 namespace fs = std::filesystem;
@@ -280,3 +282,5 @@ TEST("a run that is cut off and fails, or asks for what is not there, is reporte
         EXPECT_EQ(validate_command(options, test::fake_kinds()), code);
     }
 }
+
+}  // namespace pipeline_tests

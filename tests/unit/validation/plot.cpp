@@ -8,6 +8,8 @@
 #include <fstream>
 #include <regex>
 
+namespace plot_tests {
+
 namespace {
 
 using namespace weir;
@@ -143,3 +145,5 @@ TEST("gnuplot draws panels and maps, and runs nothing that a name says") {
 }
 
 }  // namespace
+
+}  // namespace plot_tests

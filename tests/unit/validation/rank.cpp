@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace weir::validation {
+namespace weir::validation::rank_tests {
 namespace {
 
 /// A method whose error is scale / price^power, measured at these prices.
@@ -93,4 +93,4 @@ TEST("methods whose errors differ by less than the reference is known to are not
               "");
 }
 
-}  // namespace weir::validation
+}  // namespace weir::validation::rank_tests

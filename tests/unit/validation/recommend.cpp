@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-namespace weir::validation {
+namespace weir::validation::recommend_tests {
 namespace {
 
 CostCurve line(const std::string& name, std::vector<Priced> points, bool iterations = false) {
@@ -162,4 +162,4 @@ TEST("an entry left out of a published table is predicted within a factor 1.5 in
     EXPECT_GT(predicted, declined) << "a table that declines most of its own entries recommends nothing";
 }
 
-}  // namespace weir::validation
+}  // namespace weir::validation::recommend_tests

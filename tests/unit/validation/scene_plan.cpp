@@ -6,6 +6,8 @@
 #include "support/test.hpp"
 #include "validation/uncertainty/other_influences.hpp"
 
+namespace scene_plan_tests {
+
 using namespace weir;
 using namespace weir::validation;
 
@@ -181,3 +183,5 @@ TEST("a kept run is read back as it was") {
     EXPECT_THROW(run_from_json("{}"), BadInput);
     EXPECT_THROW(run_from_json("nonsense"), BadInput);
 }
+
+}  // namespace scene_plan_tests

@@ -14,6 +14,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
+namespace stability_tests {
+
 using namespace weir;
 using namespace weir::validation;
 namespace fs = std::filesystem;
@@ -411,3 +413,5 @@ TEST("a limit that ends unbroken without a reason, or breaks in spite of one, an
     limit.climbed = false;  // a guaranteed range alone does not measure the axis
     EXPECT_EQ(limit.doubt(), "");
 }
+
+}  // namespace stability_tests

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace weir::validation {
+namespace weir::validation::studies_page_tests {
 namespace {
 
 void expect_named(const std::vector<scene::Key>& keys, const std::string& page, const std::string& where) {
@@ -26,4 +26,4 @@ TEST("the page of the files of a case names all their keys") {
 }
 
 }  // namespace
-}  // namespace weir::validation
+}  // namespace weir::validation::studies_page_tests

@@ -3,6 +3,8 @@
 
 #include "support/test.hpp"
 
+namespace verdict_tests {
+
 using namespace weir;
 using namespace weir::validation;
 using Test = Criterion::Test;
@@ -49,6 +51,34 @@ TEST("NaN, infinity and a metric that was not measured fail every kind of claim"
         EXPECT_FALSE(judged(claim(test, low, high), {run(8, 0.1), empty}).pass) << name(test);
     }
     EXPECT_FALSE(judged(claim(Test::at_most, -inf, 10), {run(8, inf)}).pass);
+}
+
+TEST("an ensemble agrees with experiments within twice the validation uncertainty, whose parts are those of V&V 20") {
+    Criterion c = claim(Test::agrees_with, -inf, inf);
+    c.metric = "kinetic_energy";
+    c.experiment = Experiment{.mean = 10, .deviation = 4, .samples = 16, .median = 9.5, .grids = "grids"};  // u_D = 1
+    Variant of_grids{.name = "grids", .sweep = Sweep{.key = "grid.cells", .values = {10, 20, 40}}};
+    VariantResult grids{.plan = of_grids, .runs = {run(10, 0), run(20, 0), run(40, 0)}, .verdicts = {}};
+    for (RunResult& r : grids.runs) r.measured = {{"kinetic_energy", 2 + 160 * r.h}};  // first order: U = 1.5 times 4, u_num = 3
+    const auto judged_with = [&](real first, real second, const std::vector<VariantResult>& before) {
+        std::vector<RunResult> ensemble = {run(1, 0), run(2, 0)};
+        ensemble[0].measured = {{"kinetic_energy", first}}, ensemble[1].measured = {{"kinetic_energy", second}};
+        return judge({.name = "v", .accept = {c}}, ensemble, before).at(0);
+    };
+    const real two = std::sqrt(2.0);  // of m -+ sqrt(2): mean m, standard deviation u_input = 2
+    const Verdict close = judged_with(15 - two, 15 + two, {grids});
+    EXPECT_NEAR(close.measured, 0.5, 1e-12);
+    EXPECT_NEAR(close.high, 2 * std::sqrt(9.0 + 4.0 + 1.0) / 10, 1e-9);
+    EXPECT_TRUE(close.pass);
+    EXPECT_NE(close.note.find("a model error above 74.8% would be told apart"), std::string::npos) << close.note;
+    c.experiment->power = 0.7;
+    EXPECT_FALSE(judged_with(15 - two, 15 + two, {grids}).pass);  // it could not tell 70% apart
+    c.experiment->power = 1;
+    EXPECT_FALSE(judged_with(18 - two, 18 + two, {grids}).pass);
+    EXPECT_FALSE(judged_with(2 - two, 2 + two, {grids}).pass);  // below as well
+    EXPECT_FALSE(judged_with(10, std::nan(""), {grids}).pass);
+    grids.runs[1].measured = {{"kinetic_energy", std::nan("")}};
+    EXPECT_FALSE(judged_with(10, 11, {grids}).pass);  // no band, no verdict
 }
 
 TEST("a value of a sweep over three grids has a band, and its claim is judged by it") {
@@ -137,3 +167,5 @@ TEST("a series that rises once fails never_increases, by how much it rose") {
     r.series["velocity.l2"] = falling;
     EXPECT_TRUE(judged(claim(Test::never_increases, -inf, 1e-12), {r}).pass);
 }
+
+}  // namespace verdict_tests

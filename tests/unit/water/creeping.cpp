@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace weir::water {
+namespace weir::water::creeping_tests {
 
 namespace {
 
@@ -92,4 +92,4 @@ TEST("a creeping block takes one solve a step, once it creeps") {
     EXPECT_LE(turns, 1);
 }
 
-}  // namespace weir::water
+}  // namespace weir::water::creeping_tests

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace weir::water {
+namespace weir::water::drops_tests {
 
 namespace {
 
@@ -133,4 +133,4 @@ TEST("a short capsule swings with the frequency of Rayleigh, and no faster from 
     }
 }
 
-}  // namespace weir::water
+}  // namespace weir::water::drops_tests

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace emitters_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -161,3 +163,5 @@ TEST_IN_2D_AND_3D("emitters that can give nothing are refused") {
         "solids = [ { shape = \"box\", min = " + list({"0.3", "0.0", "0.3"}, D) + ", max = " + list({"0.7", "0.4", "0.7"}, D) + " } ]\n";
     EXPECT_NE(refusal(fountain<D>("flip", 0.4, 0.1, block)).find("lies inside solids"), std::string::npos);
 }
+
+}  // namespace emitters_tests

@@ -1,7 +1,7 @@
 // Energy of waves and of a rolling body: nothing puts any in.
 #include "support.hpp"
 
-namespace weir::test {
+namespace weir::test::energy_tests {
 namespace {
 
 using water::Water;
@@ -199,4 +199,4 @@ scheme.transfer = "flip"
 }
 
 }  // namespace
-}  // namespace weir::test
+}  // namespace weir::test::energy_tests

@@ -3,6 +3,8 @@
 #include "free_surface/extrapolate.hpp"
 #include "support.hpp"
 
+namespace extrapolate_tests {
+
 using namespace weir;
 using namespace weir::water;
 
@@ -139,3 +141,5 @@ TEST_IN_2D_AND_3D(
         EXPECT_GT(filled, 50u);
     }
 }
+
+}  // namespace extrapolate_tests

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace heat_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -287,3 +289,5 @@ TEST("heat in water: the same bits with one and with three threads, and after a 
     EXPECT_TRUE(same(again));
     EXPECT_TRUE(same(three));
 }
+
+}  // namespace heat_tests

@@ -3,6 +3,8 @@
 #include "support.hpp"
 #include "water/solver.hpp"
 
+namespace level_set_tests {
+
 using namespace weir;
 using namespace weir::water;
 
@@ -250,3 +252,5 @@ TEST_IN_2D_AND_3D("the surface comes from where a trace says, by cubic interpola
         }
     }
 }
+
+}  // namespace level_set_tests

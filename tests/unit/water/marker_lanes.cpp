@@ -7,6 +7,8 @@
 
 #include <atomic>
 
+namespace marker_lanes_tests {
+
 using namespace weir;
 using namespace weir::water;
 
@@ -132,3 +134,5 @@ TEST_IN_2D_AND_3D("cells found eight markers at a time are those that each marke
     });
     EXPECT_EQ(seen, markers.count());
 }
+
+}  // namespace marker_lanes_tests

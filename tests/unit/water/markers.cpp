@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+namespace markers_tests {
+
 using namespace weir;
 using namespace weir::water;
 
@@ -104,3 +106,5 @@ TEST_IN_2D_AND_3D("no marker leaves through a wall, and those that leave through
     EXPECT_EQ(remove_departed(markers, frame, sides), 500u);
     EXPECT_EQ(markers.count(), 0u);
 }
+
+}  // namespace markers_tests

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+namespace pressure_tests {
+
 using namespace weir;
 using namespace weir::water;
 using poisson::Cell;
@@ -109,3 +111,5 @@ TEST_IN_2D_AND_3D("projection subtracts the gradient of the ghost-fluid pressure
         agrees_with_definition<D>("sides = { x_min = { kind = \"open\" }, y_max = { kind = \"open\" } }\n", tension);
     }
 }
+
+}  // namespace pressure_tests

@@ -1,6 +1,8 @@
 // Water at rest stays at rest, wherever and however its surface cuts the cells.
 #include "support.hpp"
 
+namespace rest_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -55,3 +57,5 @@ TEST_IN_2D_AND_3D("liquid poured against walls has a level surface up to them: a
     EXPECT_LT(std::sqrt(integral(water, "kinetic_energy") / 500), 1e-6 * std::sqrt(9.81 * 0.52));
     EXPECT_NEAR(integral(water, "top"), 0.52, 1e-9);
 }
+
+}  // namespace rest_tests

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace solids_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -196,3 +198,5 @@ TEST("beside solids at rest and moving ones, one thread and three give the same 
         }
     }
 }
+
+}  // namespace solids_tests

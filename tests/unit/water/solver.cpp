@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+namespace solver_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -153,3 +155,5 @@ TEST("scenes without liquid, with liquid inside solids, and with liquid outside 
     EXPECT_NE(away.find("liquid"), std::string::npos) << away;
     EXPECT_NE(away, "accepted");
 }
+
+}  // namespace solver_tests

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+namespace sources_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -72,3 +74,5 @@ TEST_IN_2D_AND_3D("an emitter pours its cross-section times its speed, and what 
         EXPECT_NEAR(integral(water, "volume_target") / poured<D>(0.1, 2.5), 0, 1e-5) << transfer;
     }
 }
+
+}  // namespace sources_tests

@@ -1,7 +1,7 @@
 // What the order of the passes of a step does to flows that should not know the step.
 #include "support.hpp"
 
-namespace weir::water {
+namespace weir::water::splitting_tests {
 
 namespace {
 
@@ -105,4 +105,4 @@ TEST("a standing wave does not lag, and is of second order in the step") {
     }
 }
 
-}  // namespace weir::water
+}  // namespace weir::water::splitting_tests

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+namespace tension_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -160,3 +162,5 @@ effects = { gravity = { g = [1.0, -9.81] }, viscosity = {} }
         EXPECT_NEAR(integral(water, "volume"), 0.125, 1e-6) << transfer;
     }
 }
+
+}  // namespace tension_tests

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace thin_walls_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -177,3 +179,5 @@ TEST_IN_2D_AND_3D("the volume in a vessel counts the open part of the cells that
     const real exact = D == 2 ? 0.4 * 0.3 : 0.4 * 0.4 * 0.3;
     EXPECT_NEAR(water.surface().volume() / exact, 1, D == 2 ? 0.005 : 0.02);
 }
+
+}  // namespace thin_walls_tests

@@ -1,6 +1,8 @@
 #include "water/transfer.hpp"
 #include "support.hpp"
 
+namespace transfer_tests {
+
 using namespace weir;
 using namespace weir::water;
 
@@ -159,3 +161,5 @@ TEST_IN_2D_AND_3D("what markers give to faces does not depend on the number of t
     }
     set_threads(1);
 }
+
+}  // namespace transfer_tests

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+namespace volume_tests {
+
 using namespace weir;
 using namespace weir::test;
 using namespace weir::free_surface;
@@ -144,3 +146,5 @@ TEST_IN_2D_AND_3D("in a flow without divergence parts stay in [0, 1] and keep th
     EXPECT_GT(least, -1e-5);
     EXPECT_LT(most, 1 + 1e-5);
 }
+
+}  // namespace volume_tests

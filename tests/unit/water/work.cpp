@@ -4,6 +4,8 @@
 
 #include <numeric>
 
+namespace work_tests {
+
 using namespace weir;
 using namespace weir::test;
 
@@ -67,3 +69,5 @@ TEST("a tank without liquid at the start is cut into as many planes for each") {
     const auto work = water::work_of_planes(water_scene(one_end("0.48"), {{"liquid", "[]"}}));
     for (const int ranks : {2, 3, 4}) EXPECT_EQ(load_balanced_partition(work, ranks), equal_partition(96, ranks)) << ranks;
 }
+
+}  // namespace work_tests

@@ -1,5 +1,7 @@
 #include "unit/waves/support.hpp"
 
+namespace basin_tests {
+
 using namespace weir;
 using namespace weir::waves;
 using weir::test::ask;
@@ -54,3 +56,5 @@ TEST("a basin begins as its liquid stands, keeps its water, and nothing passes i
     EXPECT_NEAR((ask<2>(solver, "velocity", {{0, -3, 0}})[0]), 0, 1e-15);
     EXPECT_NEAR((ask<2>(solver, "velocity", {{10, -3, 0}})[0]), 0, 1e-12);
 }
+
+}  // namespace basin_tests

@@ -2,6 +2,8 @@
 #include "unit/waves/support.hpp"
 #include "waves/spectra.hpp"
 
+namespace dispersion_tests {
+
 using namespace weir;
 using namespace weir::waves;
 
@@ -64,3 +66,5 @@ TEST("a spectrum has the same variance in frequencies and in wavenumbers, and sp
         EXPECT_NEAR(sum, 1, 1e-9) << s;
     }
 }
+
+}  // namespace dispersion_tests

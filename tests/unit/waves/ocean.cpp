@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+namespace ocean_tests {
+
 using namespace weir;
 using namespace weir::waves;
 using weir::test::ask;
@@ -151,3 +153,5 @@ TEST("a choppy sea that folds says so, once it is not asked to mark the place wi
     for (std::size_t i = 0; i < foam.size(); ++i) EXPECT_EQ(foam[i], std::clamp(1 - jacobian[i] / 0.5, 0.0, 1.0));
     EXPECT_EQ(*std::max_element(foam.begin(), foam.end()), 1);
 }
+
+}  // namespace ocean_tests

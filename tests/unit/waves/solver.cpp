@@ -1,6 +1,8 @@
 #include "sim/simulation.hpp"
 #include "unit/waves/support.hpp"
 
+namespace solver_tests {
+
 using namespace weir;
 using namespace weir::waves;
 using weir::test::sea_scene;
@@ -66,3 +68,5 @@ TEST("the surface is a sheet of points in rows, which every field of the set fol
     for (const FieldView& f : fields.fields)
         for (const auto& values : f.data) EXPECT_EQ(values.size(), 48U * 36U) << f.name;
 }
+
+}  // namespace solver_tests

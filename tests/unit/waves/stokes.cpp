@@ -1,6 +1,8 @@
 #include "waves/stokes.hpp"
 #include "unit/waves/support.hpp"
 
+namespace stokes_tests {
+
 using namespace weir;
 using namespace weir::waves;
 
@@ -42,3 +44,5 @@ TEST("the surface moves with the water: d eta/dt = v - u d eta/dx, to what the f
         EXPECT_NEAR((after - before) / (2 * h), u[1] - u[0] * slope, 4e-6 * stokes.speed() * 10);  // coefficients of order ten
     }
 }
+
+}  // namespace stokes_tests

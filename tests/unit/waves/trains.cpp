@@ -1,5 +1,7 @@
 #include "unit/waves/support.hpp"
 
+namespace trains_tests {
+
 using namespace weir;
 using namespace weir::waves;
 using weir::test::ask;
@@ -100,3 +102,5 @@ TEST("orbits flatten near the shore, and a wave is no higher than it breaks at")
     EXPECT_GT(near_wide / near_high, 1.9);     // 1/(1 - e^(-2 k h)) = 2.1 at k h = 0.32, a little less as the ellipse is tilted
     EXPECT_LE(near_high, 0.39 * 0.55 * 1.02);  // McCowan, at the depth there; the tilt adds a little
 }
+
+}  // namespace trains_tests
