@@ -1,5 +1,5 @@
 // A frame of reference that turns about a fixed axis, as that of a tank that rolls: the scene's coordinates turn with the tank, and the
-// fluid feels (Batchelor 1967, eq. 3.2.9)
+// fluid feels (Batchelor 1967, section 3.2)
 //     f = g(t) + Ω² r − dΩ/dt e × r − 2 Ω e × u
 // with r the vector from the axis, e its direction, Ω = dθ/dt, and g(t) the scene's gravity seen from the turned frame.
 #pragma once
