@@ -1,4 +1,4 @@
-// ExperimentComparison of an ensemble of runs with repeated experiments: ASME V&V 20-2009. E = S − D is judged by the validation
+// Comparison of an ensemble of runs with repeated experiments: ASME V&V 20-2009. E = S − D is judged by the validation
 // uncertainty
 //     u_val² = u_num² + u_input² + u_D²                                      section 1-5
 // u_num is half the band of the grids (which holds 95%), u_input the standard deviation of runs whose inputs and seeds are drawn from their
