@@ -62,19 +62,11 @@ template <int D>
 Roll RotatingFrame<D>::at(real t) const {
     const Ramp s(t, ramp_);
     const real sine = std::sin(omega_ * t + phase_), first = omega_ * std::cos(omega_ * t + phase_), second = -omega_ * omega_ * sine;
-    return {.angle = rate_ * t + amplitude_ * s.value * sine,
+    const real angle = rate_ * t + amplitude_ * s.value * sine, gp = gravity_[p()], gq = gravity_[q()];
+    return {.angle = angle,
             .rate = rate_ + amplitude_ * (s.first * sine + s.value * first),
-            .acceleration = amplitude_ * (s.second * sine + 2 * s.first * first + s.value * second)};
-}
-
-template <int D>
-Vec<D> RotatingFrame<D>::acceleration(const Roll& roll, const Vec<D>& x) const {
-    const real c = std::cos(roll.angle), s = std::sin(roll.angle), squared = roll.rate * roll.rate;
-    const real gp = gravity_[p()], gq = gravity_[q()], rp = x[p()] - centre_[p()], rq = x[q()] - centre_[q()];
-    Vec<D> f{};
-    f[p()] = (c - 1) * gp + s * gq + squared * rp + roll.acceleration * rq;
-    f[q()] = (c - 1) * gq - s * gp + squared * rq - roll.acceleration * rp;
-    return f;
+            .acceleration = amplitude_ * (s.second * sine + 2 * s.first * first + s.value * second),
+            .tilt = {(std::cos(angle) - 1) * gp + std::sin(angle) * gq, (std::cos(angle) - 1) * gq - std::sin(angle) * gp}};
 }
 
 template <int D>

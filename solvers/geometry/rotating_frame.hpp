@@ -11,9 +11,10 @@
 
 namespace weir::geometry {
 
-/// θ and its two derivatives [rad, rad/s, rad/s²].
+/// θ and its two derivatives at one time [rad, rad/s, rad/s²], and by how much gravity has turned along e_p and e_q [m/s²].
 struct Roll {
     real angle = 0, rate = 0, acceleration = 0;
+    std::array<real, 2> tilt{};
 };
 
 template <int D>
@@ -29,7 +30,13 @@ public:
     /// The scene's, which its own effect adds [m/s²].
     const Vec<D>& gravity() const { return gravity_; }
     /// The part of f that does not depend on u, less the scene's gravity; at x [m/s²].
-    Vec<D> acceleration(const Roll& roll, const Vec<D>& x) const;
+    Vec<D> acceleration(const Roll& roll, const Vec<D>& x) const {
+        const real rp = x[p()] - centre_[p()], rq = x[q()] - centre_[q()], squared = roll.rate * roll.rate;
+        Vec<D> f{};
+        f[p()] = roll.tilt[0] + squared * rp + roll.acceleration * rq;
+        f[q()] = roll.tilt[1] + squared * rq - roll.acceleration * rp;
+        return f;
+    }
     /// Largest magnitude of that on the box [lo, hi] at any time, with the scene's gravity [m/s²].
     real most(const Vec<D>& lo, const Vec<D>& hi) const;
 

@@ -103,6 +103,10 @@ Sweep VariantReader::sweep(const Table& t) {
     if (t.has("keep"))
         for (const auto& axis : t.texts("keep")) s.keep.push_back(axis.front() - 'x');
     if (s.values.empty()) problem(t.place("values"), "a sweep needs at least one value");
+    for (std::size_t i = 1; i < s.values.size(); ++i)  // a value names the run's folder and its published numbers
+        if (std::find(s.values.begin(), s.values.begin() + static_cast<std::ptrdiff_t>(i), s.values[i]) !=
+            s.values.begin() + static_cast<std::ptrdiff_t>(i))
+            problem(t.place("values"), fmt::format("the sweep has the value {} twice", s.values[i]));
     for (const Table& also : t.tables("also")) {
         s.also.push_back({also.text("key"), numbers_of_size(also)});
         const std::size_t count = s.also.back().values.size();

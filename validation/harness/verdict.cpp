@@ -126,6 +126,7 @@ Verdict judge_one(const Criterion& c, const Variant& plan, const std::vector<Run
 }  // namespace
 
 std::string Verdict::bound() const {
+    if (criterion == name(Test::agrees_with)) return "<= 2 u_val";  // which is measured with it
     if (criterion.starts_with("never_")) return fmt::format("<= {:.3g} a step", high);
     if (low == -infinity) return fmt::format("<= {:.4g}", high);
     if (high == infinity) return fmt::format(">= {:.4g}", low);

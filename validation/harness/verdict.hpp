@@ -43,7 +43,7 @@ struct Verdict {
     std::string not_reached{};  // why an open target is not met: listed, not claimed
     std::string note{};         // a failure's message, or a warning about the grids
     double seconds = 0;         // of the runs that it rests on
-    /// "<= 1e-08", "in [0.9, 1.1]", ">= 1.8"
+    /// "<= 1e-08", "in [0.9, 1.1]", ">= 1.8", "<= 2 u_val"
     std::string bound() const;
     /// A claim must hold. What is listed as not reached must have been measured and fall short: once it is met the list is wrong.
     bool as_said() const { return not_reached.empty() ? pass : !pass && !std::isnan(measured); }

@@ -14,11 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-/// A claim as the page shows it: what is claimed, and its bound; that of agrees_with is measured with it.
+/// A claim as the page shows it: what is claimed, and its bound.
 std::string claim_text(const std::string& variant, const std::string& metric, const std::string& test, const std::string& bound,
                        bool open) {
-    const std::string shown = test == name(Criterion::Test::agrees_with) ? "twice the validation uncertainty" : bound;
-    return fmt::format("{}{}{} {} {}{}", variant, variant.empty() ? "" : ": ", metric, test, shown, open ? " (asked)" : "");
+    return fmt::format("{}{}{} {} {}{}", variant, variant.empty() ? "" : ": ", metric, test, bound, open ? " (asked)" : "");
 }
 
 std::multiset<std::string> claims_of(const Case& full) {

@@ -104,9 +104,9 @@ std::vector<Cell> grid_cells(const ScenePlan& plan, std::size_t m, std::size_t g
         cells.push_back(known ? number(value_text(value, q.width), size_of(value.samples)) : number("", 0));
         cells.push_back(bounded ? number(text_with_unit(q.error[g], value.unit, q.error[g]), q.error[g]) : number("", 0));
     }
-    const double ms = 1e3 * study.seconds_per_frame(g, plan.limits.frame);
+    const double seconds = study.seconds_per_frame(g, plan.limits.frame);
     cells.push_back(verdict(verdict_of(plan, m, g)));
-    cells.push_back(number(fmt::format("{:.2g}", ms), ms));
+    cells.push_back(number(in_milliseconds(seconds), seconds));
     cells.push_back(note(notes_of(study, g)));
     return cells;
 }
@@ -133,8 +133,7 @@ std::string configurations(const ScenePlan& plan) {
     for (const PlannedMethod& m : plan.methods)
         if (!m.study.left_out.empty()) left_out.push_back(m.study.method.name + " left out: " + m.study.left_out);
     return "<p>\"Error within\" bounds the numerical error: the difference from the finest grid plus the band of the finest grid. It does "
-           "not "
-           "contain how well the equations describe an experiment.</p>\n" +
+           "not contain how well the equations describe an experiment.</p>\n" +
            table.html() + list(left_out);
 }
 
@@ -161,8 +160,7 @@ std::string influences(const ScenePlan& plan) {
         if (const std::string twin = twin_text(m.study); !twin.empty()) lines.push_back(twin);
     }
     return "<p>Further runs on the coarsest grid halve the time step, place the markers at other random positions, and double keys that no "
-           "grid "
-           "refines. A twin run shows whether the flow is chaotic.</p>\n" +
+           "grid refines. A twin run shows whether the flow is chaotic.</p>\n" +
            table.html() + list(lines);
 }
 

@@ -39,7 +39,7 @@ std::string rows(const PlannedMethod& planned, std::size_t q, const ScenePlan& p
         s += fmt::format("{:16}{:>14}  {:>14}  {:>12}  {:>9}   {}\n", study.method.name, study.grids[g].grid.text(),
                          value_text(quantity.values[g], quantity.width),
                          known ? text_with_unit(quantity.error[g], quantity.values[g].unit, quantity.error[g]) : "-",
-                         fmt::format("{:.2g}", 1e3 * study.seconds_per_frame(g, plan.limits.frame)), note_text(quantity, study, g));
+                         in_milliseconds(study.seconds_per_frame(g, plan.limits.frame)), note_text(quantity, study, g));
     }
     return s;
 }

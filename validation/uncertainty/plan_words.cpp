@@ -28,7 +28,12 @@ std::string finer_text(const MethodStudy& study, const Limits& limits) {
 
 }  // namespace
 
-std::string milliseconds(double seconds) { return fmt::format("{:.2g} ms", 1e3 * seconds); }
+std::string in_milliseconds(double seconds) {
+    const double ms = 1e3 * seconds;
+    return ms < 99.5 ? fmt::format("{:.2g}", ms) : fmt::format("{:.0f}", ms);
+}
+
+std::string milliseconds(double seconds) { return in_milliseconds(seconds) + " ms"; }
 
 std::string wish_text(const ScenePlan& plan, std::size_t q) {
     if (plan.wishes.empty()) return "as accurately as possible";
@@ -93,9 +98,9 @@ std::vector<std::string> nearest(const ScenePlan& plan) {
     for (const PlannedMethod& m : plan.methods)
         for (const QuantityStudy& q : m.study.quantities)
             if (q.refused.empty() && !m.other_equations())
-                lines.push_back(fmt::format("{} {} is known to {} at {:.2g} ms per frame", m.study.method.name, q.asked.quantity.text,
+                lines.push_back(fmt::format("{} {} is known to {} at {} per frame", m.study.method.name, q.asked.quantity.text,
                                             text_with_unit(q.width, q.finest().unit, q.width),
-                                            1e3 * m.study.seconds_per_frame(m.study.grids.size() - 1, plan.limits.frame)));
+                                            milliseconds(m.study.seconds_per_frame(m.study.grids.size() - 1, plan.limits.frame))));
     for (const PlannedMethod& m : plan.methods)
         if (const std::string finer = finer_text(m.study, plan.limits); !finer.empty() && !m.other_equations()) lines.push_back(finer);
     return lines;

@@ -9,6 +9,8 @@ namespace weir::validation::plan_words {
 
 inline constexpr double busy = 0.25;  // cores of other programs that are mentioned
 
+/// Milliseconds with two digits, or all before the point: "4.2", "120".
+std::string in_milliseconds(double seconds);
 /// "4.2 ms".
 std::string milliseconds(double seconds);
 /// "to 5% of its range (94.86 mm: 4.7 mm)", "as accurately as possible".

@@ -37,18 +37,14 @@ private:
                 s.u[a](I) += dt * (frame_.acceleration(roll, s.u.face_centre(a, I))[a] + more[a]);
             });
     }
-    /// u_a += by u_b, the mean of the four nearest faces.
+    /// u_a += by u_b, the mean of the four nearest faces. Sides around the axis are walls: free faces have cells on both sides.
     static void turn(MacState<D>& s, int a, int b, real by) {
         if (by == 0) return;
-        sync_periodic(s.u, s.sides);
         refresh(s.u[b], s.sides.periodic(D - 1));
         const Index<D> across = e<D>(b);
         for_each_free_face(s.u, s.sides, a, [&](const Index<D>& I) {
-            Index<D> upper = I, lower = I - e<D>(a);  // the cells on both sides; beyond a side the one inside
-            if (s.sides.periodic(a) && lower[a] < 0) lower[a] += s.u.cells[a];
-            if (lower[a] < 0) lower = upper;
-            if (upper[a] >= s.u.cells[a]) upper = lower;
-            s.u[a](I) += 0.25 * by * (s.u[b](lower) + s.u[b](lower + across) + s.u[b](upper) + s.u[b](upper + across));
+            const Index<D> lower = I - e<D>(a);
+            s.u[a](I) += 0.25 * by * (s.u[b](lower) + s.u[b](lower + across) + s.u[b](I) + s.u[b](I + across));
         });
     }
 

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <memory>
-#include <type_traits>
 
 namespace weir::particles {
 
@@ -22,7 +21,7 @@ constexpr const char *pair_velocity = "velocity of pairs", *pair_change = "chang
 template <int D>
 struct Gravity final : Effect<Flow<D>> {
     Vec<D> g;
-    explicit Gravity(const scene::Table& t) : g(t.vec<D>("g")) {}
+    Gravity(const scene::Table& t, const scene::Scene&) : g(t.vec<D>("g")) {}
     Stage stage() const override { return Stage::force; }
     void apply(Flow<D>& f, real dt) override {
         for (int a = 0; a < D; ++a) {
@@ -63,7 +62,7 @@ template <int D>
 struct CentralForce final : Effect<Flow<D>> {
     real omega;
     Vec<D> centre;
-    explicit CentralForce(const scene::Table& t) : omega(t.number("omega")), centre(t.vec<D>("centre")) {}
+    CentralForce(const scene::Table& t, const scene::Scene&) : omega(t.number("omega")), centre(t.vec<D>("centre")) {}
     Stage stage() const override { return Stage::force; }
     void apply(Flow<D>& f, real dt) override {
         parallel_for(0, f.fluid.count(), [&](int i) {
@@ -77,7 +76,7 @@ struct CentralForce final : Effect<Flow<D>> {
 template <int D>
 struct Xsph final : Effect<Flow<D>> {
     real c;
-    explicit Xsph(const scene::Table& t) : c(t.number("c")) {}
+    Xsph(const scene::Table& t, const scene::Scene&) : c(t.number("c")) {}
     Stage stage() const override { return Stage::finish; }
     void needs(FieldPlan& plan) const override { plan.scratch(pair_velocity).scratch(pair_change); }
     void apply(Flow<D>& f, real) override {
@@ -94,7 +93,7 @@ template <int D>
 struct Confinement final : Effect<Flow<D>> {
     real epsilon;
     std::vector<float> omega;
-    explicit Confinement(const scene::Table& t) : epsilon(t.number("epsilon")) {}
+    Confinement(const scene::Table& t, const scene::Scene&) : epsilon(t.number("epsilon")) {}
     Stage stage() const override { return Stage::finish; }
     std::size_t bytes() const override { return omega.capacity() * sizeof(float); }
     void needs(FieldPlan& plan) const override { plan.scratch(pair_velocity).scratch(pair_change); }
@@ -120,10 +119,7 @@ struct Offer {
 };
 template <int D, class E>
 std::unique_ptr<Effect<Flow<D>>> make(const scene::Table& table, const scene::Scene& scene) {
-    if constexpr (std::is_constructible_v<E, const scene::Table&, const scene::Scene&>)
-        return std::make_unique<E>(table, scene);
-    else
-        return std::make_unique<E>(table);
+    return std::make_unique<E>(table, scene);
 }
 
 /// In the order in which they act.

@@ -145,4 +145,26 @@ variants = [ { name = "a b" }, { name = "c" }, { name = "c" } ]
                    "two variants are called \"c\"");
 }
 
+TEST("a sweep with a value twice is refused: it names a folder and published numbers") {
+    expect_refused(
+        head + "sweep = { key = \"time.dt\", values = [0.1, 0.2, 0.1] }\naccept = [ { metric = \"x\", at_most = 1, why = \"w\" } ]",
+        "the sweep has the value 0.1 twice");
+}
+
+TEST("an ensemble needs a sweep, and grids of a variant before it, which then measures what is compared") {
+    const auto ensemble = [](const std::string& grids, const std::string& sweep) {
+        return head +
+               "[[variants]]\nname = \"g\"\nsweep = { key = \"grid.cells\", values = [8, 16, 32] }\n"
+               "accept = [ { metric = \"y\", at_most = 1, why = \"w\" } ]\n[[variants]]\nname = \"e\"\n" +
+               sweep + "accept = [ { metric = \"x\", agrees_with = { mean = 1, deviation = 1, samples = 9, grids = \"" + grids +
+               "\" }, why = \"w\" } ]\n";
+    };
+    const std::string seeds = "sweep = { key = \"scheme.seed\", values = [1, 2] }\n";
+    expect_refused(ensemble("e", seeds), "grids = \"e\" is no variant before this one");
+    expect_refused(ensemble("g", ""), "an ensemble needs a sweep of at least two values");
+    const Case c = read(ensemble("g", seeds));
+    EXPECT_EQ(c.variants.at(0).measured_too, std::vector<std::string>{"x"});
+    EXPECT_EQ(c.variants.at(1).accept.at(0).experiment->power, 1);
+}
+
 }  // namespace case_tests
