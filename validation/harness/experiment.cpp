@@ -29,7 +29,7 @@ std::string words_of(const ExperimentComparison& c, const Experiment& experiment
     const auto part = [&](real value) { return fmt::format("{:.3g}%", 100 * value / std::abs(experiment.mean)); };
     const std::string median = experiment.median ? fmt::format(" (median {:.4g})", *experiment.median) : "";
     return fmt::format(
-        "{} runs {:.4g} +- {:.3g} (median {:.4g}), experiment {:.4g} +- {:.3g}{}; E = {}, u_val = {} (numerical {}, input {}, experiment "
+        "{} runs {:.4g} +- {:.4g} (median {:.4g}), experiment {:.4g} +- {:.4g}{}; E = {}, u_val = {} (numerical {}, input {}, experiment "
         "{}): a "
         "model error above {} would be told apart",
         c.runs, c.mean, c.deviation, c.median, experiment.mean, experiment.deviation, median, part(c.error), part(c.validation),
