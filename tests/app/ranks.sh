@@ -878,21 +878,25 @@ signals)
     wait "$started" || code=$?
     [ "$code" -eq 130 ] || fail "ended with $code after SIGUSR1"
     says "interrupted at step"
-    ends 0 over 2 "$weir" run --restart asked --quiet --set time.end=0.3
-    ends 0 "$weir" run "$flat" "${long[@]}" --quiet --threads 1 --set time.end=0.3 --out straight
-    files_differ straight asked checkpoint.weir >log || fail "an interrupted run is another"
     # one is killed: all are gone, and what was written stays whole
     begin killed
     kill -9 "$(ranks_of killed | tail -n 1)"
     code=0 start=$SECONDS
     wait "$started" || code=$?
     [ "$code" -ne 0 ] || fail "a run with a killed rank has succeeded"
-    [ $((SECONDS - start)) -le 5 ] && [ -z "$(ranks_of killed)" ] || fail "ranks live on beside a killed one"
+    # a killed rank ends the others at once; a busy machine may take some seconds
+    [ $((SECONDS - start)) -le 20 ] && [ -z "$(ranks_of killed)" ] || fail "ranks live on beside a killed one"
     [ -e killed/frames/grid_000000.vti ] || fail "no frame was finished"
+    # an uninterrupted run, three frames beyond the last of the two: a busy machine sends a signal late
+    frames=$({ ls asked/frames; ls killed/frames; } | sed -n 's/grid_0*\([0-9]\{1,\}\)\.vti/\1/p' | sort -n | tail -n 1)
+    end=$(awk "BEGIN { print 0.02 * ($frames + 3) }")
+    ends 0 "$weir" run "$flat" "${long[@]}" --quiet --threads 1 --set time.end="$end" --out straight
     for frame in killed/frames/*.vti; do
         cmp "straight/${frame#killed/}" "$frame" >log || fail "a finished frame is another"
     done
-    ends 0 "$weir" run --restart killed --threads 1 --quiet --set time.end=0.3
+    ends 0 over 2 "$weir" run --restart asked --quiet --set time.end="$end"
+    files_differ straight asked checkpoint.weir >log || fail "an interrupted run is another"
+    ends 0 "$weir" run --restart killed --threads 1 --quiet --set time.end="$end"
     files_differ straight killed checkpoint.weir >log || fail "the last checkpoint of a killed run continues otherwise"
     # a folder has one run at a time, of one process or of several
     begin taken
