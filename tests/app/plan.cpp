@@ -6,6 +6,7 @@
 
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
+#include "support/size.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 #include "validation/cost/calibrate.hpp"
@@ -66,8 +67,7 @@ CostPoint measured_now(const Study& study, const CostCurve& curve, const Priced&
 
 /// The configurations that are followed: all at full size; otherwise the least expensive, the most accurate and one between them.
 std::vector<Choice> followed_of(std::vector<Choice> rows) {
-    const char* size = std::getenv("WEIR_TEST_SIZE");
-    if (rows.size() <= 3 || (size && std::string(size) == "full")) return rows;
+    if (rows.size() <= 3 || full_size()) return rows;
     return {rows.front(), rows[rows.size() / 2], rows.back()};
 }
 

@@ -5,6 +5,7 @@
 #include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
 #include "sim/shares.hpp"
+#include "support/size.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 #include "validation/cost/parallel_estimate.hpp"
@@ -67,10 +68,8 @@ struct Steps {
 void expect_as_counted(const std::string& text, const std::vector<int>& ranks, const Steps& steps) {
     if (const std::string why = no_ranks(); !why.empty()) GTEST_SKIP() << why;
     const Runs runs(text);
-    const char* size = std::getenv("WEIR_TEST_SIZE");
-    const bool full = size && std::string(size) == "full";
     for (const int n : ranks) {
-        if (!full && n != ranks.back()) continue;  // the last has a rank between two cuts, and one at each end as every other number
+        if (!full_size() && n != ranks.back()) continue;  // the last has a rank between two cuts, and one at each end as every other number
         const Run few = runs.run(n, steps.few * steps.dt), many = runs.run(n, steps.many * steps.dt);
         ASSERT_EQ(few.steps(), static_cast<std::size_t>(steps.few));
         ASSERT_EQ(many.steps(), static_cast<std::size_t>(steps.many));
