@@ -155,7 +155,9 @@ void climb(MethodStudy& study, Climber& climber, const Ladder& ladder, const std
                              study.grids.front().grid.text(), ladder.grid(rest.back()).text(), seconds_text(study.estimated)));
         }
         climber.add(rest.front());
+        const bool beyond_limit = leave_out_unfinished(study, limits.time_limit);
         assess(study, asked, wishes);
+        if (beyond_limit) break;
         if (limits.checks && study.grids.size() == grids_before_chaos && !study.grids.back().run.failure)
             study_chaos(study, ladder, climber.more(), store, tell);
         if (refuse_after_chaos(study) || none_known(study)) break;
@@ -175,6 +177,14 @@ void estimate_next(MethodStudy& study, const Climber& climber, const std::vector
 Grid next_grid(const Ladder& ladder, const std::vector<GridRun>& runs, int number) {
     if (runs.empty()) return ladder.grid(number);
     return ladder.grid(number, runs.front().run.mean_dt, runs.front().grid.number);
+}
+
+bool leave_out_unfinished(MethodStudy& study, double time_limit) {
+    const RecordedRun& finest = study.grids.back().run;
+    if (!finest.failure || !(finest.seconds > time_limit) || study.grids.size() <= static_cast<std::size_t>(fewest_grids)) return false;
+    study.left_out += fmt::format("{}{} cells: {}", study.left_out.empty() ? "" : "; ", study.grids.back().grid.text(), *finest.failure);
+    study.grids.pop_back();
+    return true;
 }
 
 void assess(MethodStudy& study, const std::vector<Asked>& asked, const std::vector<Wish>& wishes) {

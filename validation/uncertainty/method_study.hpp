@@ -47,7 +47,7 @@ struct MethodStudy {
     std::string solver_fails{};    // why there is no study
     std::vector<GridRun> grids{};  // coarse to fine
     std::vector<QuantityStudy> quantities{};
-    std::string left_out{};               // coarser grids, and why
+    std::string left_out{};               // grids, and why
     std::optional<real> chaotic_after{};  // [s]
     std::string twin{};                   // what the twin run changed; empty: none was compared
     double estimated = 0;                 // computing seconds of the ladder, from its two coarsest grids
@@ -66,6 +66,10 @@ Grid next_grid(const Ladder& ladder, const std::vector<GridRun>& runs, int numbe
 /// Runs the ladder of a method. `wishes`: one for each quantity, or none. Throws BadInput where a quantity is unknown.
 MethodStudy study_method(const scene::Scene& scene, const Method& method, const std::vector<Asked>& asked, const std::vector<Wish>& wishes,
                          const Limits& limits, RunStore& store, const Solvers& solvers, const Tell& tell);
+
+/// Removes the finest grid if its run did not end within `time_limit` computing seconds and three coarser ones exist. A grid whose run
+/// fails numerically stays: no coarser grid is recommended then.
+bool leave_out_unfinished(MethodStudy& study, double time_limit);
 
 /// Width, bounds and refusals of the quantities for the grids that were run.
 /// A band wider than widest_band of the scale is refused, unless its wish is an absolute value, which decides then.

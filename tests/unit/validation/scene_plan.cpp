@@ -159,6 +159,27 @@ TEST("a plan of which methods fail, on any grid, is printed") {
     EXPECT_NO_THROW(plan_json(plan));
 }
 
+TEST("a finest grid that exceeds the time limit is left out, and the coarser ones keep their bounds; a numerical failure stays") {
+    const auto asked = parse_asked({"a.height"});
+    const auto ends = [&](double seconds, std::vector<real> values) {
+        MethodStudy study = study_of(values);
+        RecordedRun& finest = study.grids.back().run;
+        finest.failure = "not finished", finest.seconds = seconds;
+        const bool left_out = leave_out_unfinished(study, 120);
+        assess(study, asked);
+        EXPECT_EQ(left_out, !study.left_out.empty());
+        return study;
+    };
+    const MethodStudy slow = ends(121, {1.4, 1.2, 1.1, 7});
+    ASSERT_EQ(slow.grids.size(), 3U);
+    EXPECT_EQ(slow.left_out, "80 x 1 cells: not finished");
+    EXPECT_NEAR(slow.quantities.at(0).width, 0.15, 1e-9) << "that of the three grids before";
+    const MethodStudy broken = ends(119, {1.4, 1.2, 1.1, 7});
+    EXPECT_EQ(broken.grids.size(), 4U);
+    EXPECT_NE(broken.quantities.at(0).refused, "");
+    EXPECT_EQ(ends(121, {1.4, 1.2, 1.1}).grids.size(), 3U) << "two grids have no band";
+}
+
 TEST("wishes are parts of a scale or have a unit") {
     const Value height{.samples = {0.4}, .unit = "m", .scale = 0.1};
     EXPECT_NEAR(absolute(parse_wish("5%"), height), 0.005, 1e-15);
