@@ -37,7 +37,7 @@ void add_all(std::vector<OutputQuantity>& list, const scene::SolverKind& kind, c
     for (const Integral& integral : solver->integrals()) add(list, {integral.name, integral.unit, "integral", takes});
 }
 
-/// Solvers of one operator have no effects: what they need is said here.
+/// Minimal scenes of the studies, which have no plain scene.
 std::vector<std::pair<std::string, std::string>> studies_of(const std::string& solver) {
     const std::string head = "solver = \"" + solver + "\"\ndim = 3\ngrid = { cells = [8, 8, 8], size = [1, 1, 1] }\ntime = { end = 1.0 }\n";
     if (solver == "poisson") return {{head + "problem = \"N3\"\n", ""}};
@@ -61,7 +61,7 @@ std::vector<std::pair<std::string, std::string>> studies_of(const std::string& s
 std::vector<OutputQuantity> output_quantities(const scene::SolverKind& kind) {
     constexpr int cells = 8, dim = 3;
     std::vector<OutputQuantity> list;
-    if (kind.schema.effects.empty()) {
+    if (kind.schema.study) {
         for (const auto& [text, takes] : studies_of(kind.schema.name))
             add_all(list, kind, scene::parse(text, kind.schema.name + ".toml", {kind.schema}), takes);
         for (OutputQuantity& s : list)  // what is carried is asked for by name, the flow is always there

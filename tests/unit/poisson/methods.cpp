@@ -223,14 +223,13 @@ TEST("the cosine transform is content with what rounding leaves of a direct solv
 }
 
 TEST("an unknown method is refused and the known ones are named; so is a box that the cosine transform cannot solve") {
+    std::string known;
+    for (const auto& method : poisson::methods()) known += (known.empty() ? "" : ", ") + method.name;
     try {
         poisson::make_solver<2>("multgrid", {});
         FAIL() << "accepted";
     } catch (const BadInput& e) {
-        EXPECT_STREQ(
-            e.what(),
-            "unknown pressure method \"multgrid\"; known: multigrid, cg_mic0, cg_jacobi, cg, eigen_iccg, cholmod, red_black, jacobi, dct, "
-            "petsc_gamg, petsc_boomeramg, petsc_icc");
+        EXPECT_EQ(e.what(), "unknown pressure method \"multgrid\"; known: " + known);
     }
     auto A = box<2>(4);
     A.cells[3] = Cell::air;

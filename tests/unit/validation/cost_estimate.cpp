@@ -1,4 +1,4 @@
-// What `weir cost --plan` says before a scene runs, against what the scene then does. For every solver that registers a plain scene.
+// What `weir cost --plan` says before a scene runs, against what the scene then does. For every solver of flows in its plain scene.
 // Not covered: what a scene becomes later, and machines that are disturbed by more than a factor between two measurements of a second each.
 #include "validation/cost/cost_estimate.hpp"
 
@@ -20,7 +20,7 @@ scene::Scene scene_of(const scene::SolverKind& kind, int dim) { return plain_sce
 
 TEST_IN_2D_AND_3D("memory of a scene that is small enough to be built is estimated to the byte, fields and effects among it") {
     for (const auto& kind : sim::registry()) {
-        if (kind.plain.scene.empty()) continue;
+        if (kind.schema.study) continue;
         const scene::Scene scene = scene_of(kind, D);
         const CostEstimate f = estimate_cost(scene);
         Simulation run(scene);
@@ -55,7 +55,7 @@ TEST("a scene of 500^3 cells is estimated without being built, its steps as a ra
 TEST_IN_2D_AND_3D("a step takes within 30 per cent of the estimated time") {
     set_threads(1);
     for (const auto& kind : sim::registry()) {
-        if (kind.plain.scene.empty()) continue;
+        if (kind.schema.study) continue;
         const scene::Scene scene = scene_of(kind, D);
         std::vector<double> ratios;
         const bool rough = D == 3 && kind.schema.name == "tallcell";
