@@ -26,6 +26,18 @@ struct Ramp {
     }
 };
 
+/// Throws BadScene for a side around the axis that does not turn with the tank.
+template <int D>
+void require_wall(const Sides<D>& sides, int axis, int end, const scene::Scene& scene) {
+    if (sides.side(axis, end).kind == SideKind::wall) return;
+    const std::string name = fmt::format("sides.{}_{}", "xyz"[axis], end == 0 ? "min" : "max");
+    const bool named = scene.has(name);  // else grid.periodic names the axis
+    scene.refuse(named ? name + ".kind" : "grid.periodic",
+                 fmt::format("{} is \"{}\"; in a rotating frame the sides around the axis must be \"wall\"", name,
+                             named ? scene.root().table(name).text("kind") : "periodic"),
+                 "nothing outside would turn with the tank: close the side, or remove effects.rotating_frame");
+}
+
 }  // namespace
 
 template <int D>
@@ -37,7 +49,10 @@ RotatingFrame<D>::RotatingFrame(const scene::Table& table, const scene::Scene& s
       phase_(table.number("phase")),
       ramp_(table.number("ramp")) {
     const std::string axis = table.text("axis");
-    if (D == 2 && axis != "z") scene.refuse("effects.rotating_frame.axis", "a plane turns about z only", "remove axis");
+    if (D == 2 && axis != "z")
+        scene.refuse("effects.rotating_frame.axis",
+                     fmt::format("effects.rotating_frame.axis is \"{}\"; with dim = 2 it must be \"z\"", axis),
+                     "a plane turns about z only");
     if (axis == "x") plane_ = {1, 2};
     if (axis == "y") plane_ = {2, 0};
     if (const auto* g = scene.effect("gravity")) gravity_ = g->template vec<D>("g");
@@ -47,12 +62,7 @@ RotatingFrame<D>::RotatingFrame(const scene::Table& table, const scene::Scene& s
                          "remove effects.rotating_frame, or " + std::string(other));
     const Sides<D> sides(scene);
     for (const int a : plane_)
-        for (const int end : {0, 1})
-            if (sides.side(a, end).kind != SideKind::wall)
-                scene.refuse(
-                    "effects.rotating_frame",
-                    fmt::format("side {}_{} is no wall: nothing outside would turn with the tank", "xyz"[a], end == 0 ? "min" : "max"),
-                    "close the sides around the axis");
+        for (const int end : {0, 1}) require_wall(sides, a, end, scene);
     if (scene.has("substance"))
         scene.refuse("substance", "buoyancy of a substance is not supported in a rotating frame",
                      "remove effects.rotating_frame, or substance");
@@ -105,7 +115,7 @@ scene::Variant rotating_frame_schema() {
              number("phase", "Phase of the roll at t = 0.", "rad", 0.0),
              std::move(ramp),
              number("rate", "Constant angular velocity.", "rad/s", 0.0)},
-            {"amplitude"}};
+            {"amplitude", "rate"}};
 }
 
 }  // namespace weir::geometry

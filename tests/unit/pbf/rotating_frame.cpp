@@ -97,16 +97,42 @@ TEST_IN_2D_AND_3D("the limit of the acceleration holds at any time, in any corne
     }
 }
 
-TEST("what would not turn with the tank is refused") {
-    for (const char* more : {"axis = \"x\""}) {
+TEST("what would not turn with the tank is refused, with its place, what was found and what is allowed") {
+    const std::string rolls = "effects.rotating_frame = { centre = [0.5, 0.5], amplitude = 0.1";
+    const auto refusal = [](const std::string& more) -> std::string {
+        try {
+            frame_of<2>(test::pbf_scene<2>(test::box<2>(0.125, 0.125, 0.125), "", more));
+        } catch (const BadInput& e) {
+            return e.what();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(refusal(rolls + " }"), "accepted");
+    struct Case {
+        std::string more, says;
+    };
+    for (const Case& c : {
+             Case{rolls + ", axis = \"x\" }", "test.toml:10:73: effects.rotating_frame.axis is \"x\"; with dim = 2 it must be \"z\"\n"},
+             Case{rolls + " }\nsides = { y_max = { kind = \"open\" } }",
+                  "test.toml:11:28: sides.y_max is \"outflow\"; in a rotating frame the sides around the axis must be \"wall\"\n"},
+             Case{rolls + " }\nsides = { x_min = { kind = \"periodic\" }, x_max = { kind = \"periodic\" } }",
+                  "test.toml:11:28: sides.x_min is \"periodic\"; in a rotating frame the sides around the axis must be \"wall\"\n"},
+             Case{rolls + " }\nemitters = [{ shape = \"box\", min = [0.2, 0.9], max = [0.4, 1.0], velocity = [0, -1] }]",
+                  "test.toml:11:12: emitters are not supported in a rotating frame"},
+         })
+        EXPECT_TRUE(refusal(c.more).starts_with(c.says)) << refusal(c.more);
+}
+
+TEST("a constant rotation is no idle effect; a frame that does not turn is one") {
+    const auto idle = [](const std::string& keys) {
         const auto scene = test::pbf_scene<2>(test::box<2>(0.125, 0.125, 0.125), "",
-                                              fmt::format("effects.rotating_frame = {{ centre = [0.5, 0.5], {} }}", more));
-        EXPECT_THROW(frame_of<2>(scene), BadInput);
-    }
-    const auto emitting = test::pbf_scene<2>(test::box<2>(0.125, 0.125, 0.125), "",
-                                             "effects.rotating_frame = { centre = [0.5, 0.5] }\n"
-                                             "emitters = [{ shape = \"box\", min = [0.2, 0.9], max = [0.4, 1.0], velocity = [0, -1] }]");
-    EXPECT_THROW(frame_of<2>(emitting), BadInput);
+                                              fmt::format("effects.rotating_frame = {{ centre = [0.5, 0.5]{} }}", keys));
+        return scene::idle_effects(scene, pbf::kind().schema);
+    };
+    EXPECT_EQ(idle(""), std::vector<std::string>{"rotating_frame"});
+    EXPECT_EQ(idle(", phase = 0.5"), std::vector<std::string>{"rotating_frame"});
+    EXPECT_EQ(idle(", rate = 1.0"), std::vector<std::string>{});
+    EXPECT_EQ(idle(", amplitude = 0.1"), std::vector<std::string>{});
 }
 
 }  // namespace rotating_frame_tests
