@@ -5,7 +5,9 @@
 #include "parallel/communicator.hpp"
 #include "sim/loop.hpp"
 #include "sim/registry.hpp"
+#include "sim/shares.hpp"
 #include "surfaces/reconstruction.hpp"
+#include "validation/cost/parallel_estimate.hpp"
 
 #include <fmt/format.h>
 
@@ -153,6 +155,29 @@ std::string explain(Simulation& simulation) {
     const std::string before =
         called_for(scene, schema) + concern_text(simulation.solver()) + fields_text(simulation);  // as the scene starts
     return before + passes_text(simulation) + surface_text(simulation) + left_out(scene, schema);
+}
+
+std::string explain_ranks(const Simulation& simulation) {
+    const scene::Scene& scene = simulation.scene();
+    if (!communicator().several()) return {};
+    const sim::Shares& shares = simulation.shares();
+    const Partition& cut = shares.cut;
+    std::string text = "in parallel on " + std::to_string(communicator().ranks()) + " ranks, ";
+    if (shares.nothing_shared()) return text + "the domain cannot be partitioned: every rank computes all of it (replicated work)\n";
+    text += std::string("partitioned along ") + (scene.dim() == 2 ? "y" : "z");
+    if (cut.empty())
+        return text + " into equal numbers of particles; each rank stores and advances its own particles and stores ghost particles\n";
+    text += ", subdomains begin at planes";
+    for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
+    text += simulation.solver().holds_own_planes() ? "; distributed storage: each rank stores and computes its own slab"
+                                                   : "; replicated storage: each rank stores the whole grids and computes its own slab";
+    if (!shares.replicated_work.empty()) text += "; replicated work: " + scene::text_of(shares.replicated_work);
+    return text + "\n";
+}
+
+std::string explain_planned_ranks(const scene::Scene& scene, int ranks) {
+    const validation::CostEstimate f = validation::estimate_cost(scene);
+    return validation::parallel_estimate_text(validation::estimate_in_parallel(scene, f, ranks), f, scene);
 }
 
 }  // namespace weir::app

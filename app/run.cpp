@@ -22,7 +22,6 @@
 #include "sim/registry.hpp"
 #include "sim/run_id.hpp"
 #include "sim/shares.hpp"
-#include "validation/cost/parallel_estimate.hpp"
 #include "validation/harness/generic_metrics.hpp"
 #include "validation/report/command.hpp"
 
@@ -57,30 +56,6 @@ std::optional<output::Frames> open_frames(const Simulation& simulation, const st
         return std::nullopt;
     }
     return restarted ? output::Frames::resume(folder, options, simulation.frame() + 1, simulation.time()) : output::Frames(folder, options);
-}
-
-std::string explain_ranks(const Simulation& simulation) {
-    const scene::Scene& scene = simulation.scene();
-    if (!communicator().several()) return {};
-    const sim::Shares& shares = simulation.shares();
-    const Partition& cut = shares.cut;
-    std::string text = "in parallel on " + std::to_string(communicator().ranks()) + " ranks, ";
-    if (shares.nothing_shared()) return text + "the domain cannot be partitioned: every rank computes all of it (replicated work)\n";
-    text += std::string("partitioned along ") + (scene.dim() == 2 ? "y" : "z");
-    if (cut.empty())
-        return text + " into equal numbers of particles; each rank stores and advances its own particles and stores ghost particles\n";
-    text += ", subdomains begin at planes";
-    for (int rank = 1; rank < cut.ranks(); ++rank) text += (rank == 1 ? " " : ", ") + std::to_string(cut.begin(rank));
-    text += simulation.solver().holds_own_planes() ? "; distributed storage: each rank stores and computes its own slab"
-                                                   : "; replicated storage: each rank stores the whole grids and computes its own slab";
-    if (!shares.replicated_work.empty()) text += "; replicated work: " + scene::text_of(shares.replicated_work);
-    return text + "\n";
-}
-
-/// The same of ranks that there may be.
-std::string explain_planned_ranks(const scene::Scene& scene, int ranks) {
-    const validation::CostEstimate f = validation::estimate_cost(scene);
-    return validation::parallel_estimate_text(validation::estimate_in_parallel(scene, f, ranks), f, scene);
 }
 
 /// What the system says of this process's memory [bytes]; 0 where it does not.
@@ -288,18 +263,38 @@ int tell_finished(const Simulation& simulation) {
     return exit_success;
 }
 
-int simulate(const RunArguments& arguments) {
-    if (arguments.threads > 0) set_threads(arguments.threads);
+/// The scene of the command line, or that of the checkpoint, with the overrides of the command line.
+scene::Scene scene_of_run(const RunArguments& arguments, const Checkpoint* checkpoint) {
     std::vector<scene::Override> overrides;
     for (const auto& text : arguments.set) overrides.push_back(scene::to_override(text));
     if (!arguments.backend.empty()) overrides.push_back({"scheme.backend", '"' + arguments.backend + '"'});
-    std::optional<Checkpoint> checkpoint;
-    if (!arguments.restart.empty()) checkpoint = Checkpoint::read(find_checkpoint(arguments.restart));
     if (arguments.scene.empty() && !checkpoint)
         throw BadInput("weir run requires a scene (a file, a folder with a scene.toml, or the name of a case), or --restart");
+    return arguments.scene.empty() ? scene_of(*checkpoint, overrides)
+                                   : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
+}
 
-    scene::Scene scene = arguments.scene.empty() ? scene_of(*checkpoint, overrides)
-                                                 : scene::read(validation::scene_named(arguments.scene), sim::schemas(), overrides);
+void print_remarks(const Simulation& simulation) {
+    for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
+        std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it has no effect but may cost time\n", simulation.scene().file().c_str(),
+                     effect.c_str());
+    if (const std::string remark = rigid::remark_on_density(simulation.scene()); !remark.empty())
+        std::fprintf(stderr, "%s: %s\n", simulation.scene().file().c_str(), remark.c_str());
+    for (const std::string& warning : simulation.warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
+}
+
+int print_explanation(const RunArguments& arguments, Simulation& simulation) {
+    const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
+    std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation)).c_str(), stdout);
+    if (arguments.planned_ranks > 0) std::fputs(explain_planned_ranks(simulation.scene(), arguments.planned_ranks).c_str(), stdout);
+    return exit_success;
+}
+
+int simulate(const RunArguments& arguments) {
+    if (arguments.threads > 0) set_threads(arguments.threads);
+    std::optional<Checkpoint> checkpoint;
+    if (!arguments.restart.empty()) checkpoint = Checkpoint::read(find_checkpoint(arguments.restart));
+    scene::Scene scene = scene_of_run(arguments, checkpoint ? &*checkpoint : nullptr);
     sim::require_ranks(scene, communicator().ranks());
     if (arguments.planned_ranks > 0) {
         if (!arguments.explain) throw BadInput("--ranks estimates a run in parallel (MPI): it requires --explain; mpirun -n N starts one");
@@ -311,18 +306,8 @@ int simulate(const RunArguments& arguments) {
                             memory_for_all(scene));
     Simulation simulation(std::move(scene));
     if (checkpoint) simulation.restore(*checkpoint);
-    for (const auto& effect : scene::idle_effects(simulation.scene(), sim::kind_named(simulation.scene().solver()).schema))
-        std::fprintf(stderr, "%s: effect \"%s\" has strength zero: it has no effect but may cost time\n", simulation.scene().file().c_str(),
-                     effect.c_str());
-    if (const std::string remark = rigid::remark_on_density(simulation.scene()); !remark.empty())
-        std::fprintf(stderr, "%s: %s\n", simulation.scene().file().c_str(), remark.c_str());
-    for (const std::string& warning : simulation.warnings()) std::fprintf(stderr, "%s\n", warning.c_str());
-    if (arguments.explain) {
-        const std::string space = check_space(simulation, output_folder(arguments, simulation.scene()), true);
-        std::fputs((explain(simulation) + "a run writes " + space + explain_ranks(simulation)).c_str(), stdout);
-        if (arguments.planned_ranks > 0) std::fputs(explain_planned_ranks(simulation.scene(), arguments.planned_ranks).c_str(), stdout);
-        return exit_success;
-    }
+    print_remarks(simulation);
+    if (arguments.explain) return print_explanation(arguments, simulation);
     const std::size_t restarted = checkpoint ? checkpoint->bytes_read() : 0;
     if (restarted > 0 && simulation.finished()) return tell_finished(simulation);
     const std::string continued = checkpoint ? sim::run_id_of(*checkpoint) : "";

@@ -35,6 +35,14 @@ void Extrapolation<D>::find_band_rows(const LevelSet<D>& surface, int layers) {
     }
 }
 
+/// f(i) for the marks 1 within an extent of a row.
+template <class F>
+static void for_each_mark(const std::uint8_t* row, const Segment& extent, F&& f) {
+    for (const std::uint8_t *at = row + extent.begin, *end = row + extent.end;
+         (at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)))) != nullptr; ++at)
+        f(static_cast<int>(at - row));
+}
+
 /// Finds the first layer: unknown faces with a known neighbour. Searches the band's first `layers`, row by row.
 template <int D>
 void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const LevelSet<D>& surface, int layers) {
@@ -84,12 +92,11 @@ void Extrapolation<D>::start_front(Grid<std::uint8_t, D>& mark, int a, const Lev
                                        : (i <= last - 1 && near(over, i)) || (i > 0 && near(over, i - 1));
             joins[i] = static_cast<std::uint8_t>(joins[i] & (face[i] == 0) & wanted);
         }
-        for (const std::uint8_t *at = joins + extent.begin, *end = joins + extent.end;
-             (at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)))) != nullptr; ++at) {
-            I[0] = static_cast<int>(at - joins);
-            face[I[0]] = queued;
+        for_each_mark(joins, extent, [&](int i) {
+            I[0] = i;
+            face[i] = queued;
             front_.push_back(I);
-        }
+        });
     };
     Index<D> I{};
     const Index<D>& extent = mark.extent();

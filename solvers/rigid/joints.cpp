@@ -10,6 +10,7 @@ namespace weir::rigid {
 using scene::Key;
 using scene::Type;
 
+/// One list: its entries are data, not steps.
 Key joints_key() {
     const Key body{.name = "body",
                    .type = Type::text,

@@ -56,6 +56,7 @@ Key axis() {
 
 }  // namespace
 
+/// One list: its entries are data, not steps.
 const std::vector<Variant>& shapes() {
     static const std::vector<Variant> list = {
         {"box",

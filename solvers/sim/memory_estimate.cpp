@@ -1,14 +1,14 @@
+// Bytes of a run, of its frames and of its ranks, extrapolated from small copies that take one step.
 #include "sim/memory_estimate.hpp"
-
-#include "scene/steer.hpp"
 
 #include "core/error.hpp"
 #include "geometry/liquid_fraction.hpp"
-#include "geometry/shape.hpp"
 #include "output/frame_format.hpp"
 #include "parallel/communicator.hpp"
+#include "scene/steer.hpp"
 #include "sim/registry.hpp"
 #include "sim/shares.hpp"
+#include "sim/small_copy.hpp"
 #include "surfaces/contour.hpp"
 #include "surfaces/reconstruction.hpp"
 
@@ -18,142 +18,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <numeric>
-#include <optional>
 
 namespace weir::sim {
 namespace {
 
-constexpr double lanes_row = 32;              // cells: rows of fields are padded to whole multiples of it
-constexpr double short_row = 64;              // cells: rows up to this length are not shortened
-constexpr double fewest = 4;                  // minimum number of cells along an axis of a copy
 constexpr double particles_of_copy = 16384;   // in a copy made of particles, whose steps take longest
-constexpr int samples = 1 << 17;              // number of cells: a part of a thousandth is estimated within a tenth of it
-constexpr double alike = 0.02;                // relative to the liquid: less than a tenth of the claimed error
-constexpr double corrected = 0.3;             // relative to the particles: the number of neighbours changes little within it
-constexpr double widest_copy = 3.9;           // ratio of width to height: tall cells reject domains longer than four times their thickness
 constexpr double most_bytes_per_cell = 8000;  // upper bound for any solver: SPH's neighbours at three spacings take half of it
-
-double product(const std::vector<double>& list) { return std::accumulate(list.begin(), list.end(), 1.0, std::multiplies<>()); }
-
-/// Number of boundary faces of the cells: ghosts and coarsest multigrid levels scale with it.
-double surface(const std::vector<double>& cells) {
-    double sum = 0;
-    for (const double n : cells) sum += product(cells) / n;
-    return sum;
-}
-
-/// Number of times n can be halved, up to `most`.
-int halvings(double n, int most) {
-    int count = 0;
-    for (; count < most && std::fmod(n, 2) == 0; n /= 2) ++count;
-    return count;
-}
-
-/// About `target` cells that can be halved as often as n, as far as so few can.
-double halving_like(double n, double target) {
-    const double t = std::max(fewest, target);
-    double power = 1;
-    bool all = true;
-    while (std::fmod(n, 2 * power) == 0 && all)
-        if ((all = 2 * power <= 1.5 * t)) power *= 2;
-    return std::min(n, all ? power * (2 * std::round((t / power - 1) / 2) + 1) : power);
-}
-
-/// About `target` cells whose rows have about the same relative padding as n and can be halved about as often.
-double padded_like(double n, double target) {
-    if (n <= short_row) return n;
-    constexpr int often = 4;
-    const auto padding = [](double m) { return lanes_row * std::ceil(m / lanes_row) / m; };
-    double best = n, least = infinity;
-    for (double m = std::max(lanes_row, std::floor(0.6 * target)); m <= std::max(short_row, 1.6 * target) && m < n; ++m) {
-        // the padding adds to the size of a field; fewer halvings select another pressure solver
-        const double differs =
-            std::abs(padding(m) - padding(n)) + std::abs(halvings(m, often) - halvings(n, often)) + 0.1 * std::abs(std::log(m / target));
-        if (differs < least) least = differs, best = m;
-    }
-    return best;
-}
-
-std::vector<double> copy_cells_of(const std::vector<double>& n, double target, Copy how) {
-    std::vector<double> cells = n;
-    const double f = std::pow(target / product(n), 1.0 / static_cast<double>(n.size()));
-    if (how == Copy::similar) {
-        for (double& c : cells) c = std::min(c, std::max(fewest, std::round(c * f)));
-        return cells;
-    }
-    if (how == Copy::like_columns) {
-        const double fewer = std::pow(std::min(1.0, target / product(n)), 1.0 / static_cast<double>(n.size() - 1));
-        for (std::size_t a = 0; a < n.size(); ++a)
-            if (a != 1) cells[a] = std::min(n[a], std::max(std::ceil(n[a] / widest_copy), halving_like(n[a], n[a] * fewer)));
-        return cells;
-    }
-    cells[0] = padded_like(n[0], n[0] * f);
-    const double rest = product(n) / n[0];
-    const double g = std::pow(std::min(1.0, target / cells[0] / rest), 1.0 / static_cast<double>(n.size() - 1));
-    for (std::size_t a = 1; a < n.size(); ++a) cells[a] = halving_like(n[a], n[a] * g);
-    return cells;
-}
-
-template <int D>
-double liquid_fraction_of(const scene::Scene& scene) {
-    const auto tables = [&](const char* list) { return scene.has(list) ? scene.root().tables(list) : std::vector<scene::Table>{}; };
-    const auto liquid = geometry::make_shapes<D>(tables("liquid")), solids = geometry::make_shapes<D>(tables("solids"));
-    const Vec<D> origin = scene.vec<D>("grid.origin"), size = scene.vec<D>("grid.size");
-    const Index<D> n = scene.index<D>("grid.cells");
-    double cells = 1;
-    for (int a = 0; a < D; ++a) cells *= n[a];
-    const bool all = cells <= samples;
-    // Roberts' sequence: the powers of the root of g^(D+1) = g + 1 fill a box more evenly than random points (error 1/samples instead of
-    // its root)
-    const double g = D == 2 ? 1.32471795724474602596 : 1.22074408460575947536;
-    const auto inside = [](const auto& shapes, const Vec<D>& x) {
-        return std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s->contains(x); });
-    };
-    double wet = 0;
-    const int count = all ? static_cast<int>(cells) : samples;
-    for (int k = 0; k < count; ++k) {
-        Vec<D> x{};
-        int rest = k;
-        double power = 1;
-        for (int a = 0; a < D; ++a) {
-            power /= g;
-            const double u = 0.5 + power * (k + 1);
-            const int i = all ? rest % n[a] : std::min(n[a] - 1, static_cast<int>((u - std::floor(u)) * n[a]));
-            rest /= n[a];
-            x[a] = origin[a] + size[a] * (i + 0.5) / n[a];
-        }
-        wet += inside(liquid, x) && !inside(solids, x) ? 1 : 0;
-    }
-    return wet / count;
-}
-
-/// At least x, with few enough digits that its products with cell counts are exact: cubic cells stay cubic to the last bit.
-double short_number(double x) {
-    constexpr int bits = 30;
-    const double unit = std::ldexp(1.0, std::ilogb(x) - bits);
-    return std::ceil(x / unit) * unit;
-}
-
-std::string list_text(const std::vector<double>& list) { return fmt::format("[{}]", fmt::join(list, ", ")); }
-
-/// A pool that fills this part of the domain, including a partial layer of cells.
-std::string pool_text(const std::vector<double>& origin, const std::vector<double>& size, const std::vector<double>& cells, double part) {
-    const auto box = [&](double width, double from, double to) {
-        std::vector<double> low = origin, high = origin;
-        for (std::size_t a = 0; a < origin.size(); ++a) high[a] += size[a];
-        high[0] = origin[0] + width, low[1] += from, high[1] = origin[1] + to;
-        return fmt::format("{{ shape = \"box\", min = {}, max = {} }}", list_text(low), list_text(high));
-    };
-    const double h = size[1] / cells[1], full = std::floor(part * cells[1]), more = part * cells[1] - full;
-    std::vector<std::string> boxes;
-    if (full > 0) boxes.push_back(box(size[0], 0, full * h));
-    const double width = std::ceil(more * cells[0]) * size[0] / cells[0];
-    if (width > 0 && full < cells[1]) boxes.push_back(box(width, full * h, (full + 1) * h));
-    return fmt::format("[{}]", fmt::join(boxes, ", "));
-}
 
 struct Held {
     std::vector<double> cells;
@@ -212,8 +84,9 @@ bool consists_of_particles(const scene::Scene& scene, const std::vector<scene::S
 
 /// Extrapolates bytes from two copies: bytes per cell plus bytes per boundary face.
 double grown(const std::vector<double>& cells, const Held& fine, const Held& coarse) {
-    const double n = product(cells), s = surface(cells);
-    const double n0 = product(fine.cells), s0 = surface(fine.cells), n1 = product(coarse.cells), s1 = surface(coarse.cells);
+    const double n = number_of_cells(cells), s = number_of_boundary_faces(cells);
+    const double n0 = number_of_cells(fine.cells), s0 = number_of_boundary_faces(fine.cells), n1 = number_of_cells(coarse.cells),
+                 s1 = number_of_boundary_faces(coarse.cells);
     const double b = (coarse.bytes / n1 - fine.bytes / n0) / (s1 / n1 - s0 / n0);
     const double a = fine.bytes / n0 - b * s0 / n0;
     if (!std::isfinite(b) || b < 0 || a <= 0) return fine.bytes / n0 * n;
@@ -222,9 +95,9 @@ double grown(const std::vector<double>& cells, const Held& fine, const Held& coa
 
 /// A factorization grows faster than the cells: with the exponent fitted to two copies.
 double filled(const std::vector<double>& cells, const Held& fine, const Held& coarse) {
-    const double n0 = product(fine.cells), n1 = product(coarse.cells);
+    const double n0 = number_of_cells(fine.cells), n1 = number_of_cells(coarse.cells);
     const double power = std::log(fine.bytes / coarse.bytes) / std::log(n0 / n1);
-    return fine.bytes * std::pow(product(cells) / n0, std::clamp(power, 1.0, 2.0));
+    return fine.bytes * std::pow(number_of_cells(cells) / n0, std::clamp(power, 1.0, 2.0));
 }
 
 /// The part of a scene's memory that scales with the liquid: the difference to a pool of half the height.
@@ -247,8 +120,10 @@ bool factorises(const scene::Scene& scene) {
 std::vector<EstimatedField> fields_of(const FieldSet& set, const std::vector<double>& cells, double particles) {
     std::vector<EstimatedField> list;
     for (const FieldView& f : set.fields) {
-        const double n = product(cells), parts = f.components();
-        const double values = f.where == Where::cell ? parts * n : f.where == Where::face ? parts * n + surface(cells) : parts * particles;
+        const double n = number_of_cells(cells), parts = f.components();
+        const double values = f.where == Where::cell   ? parts * n
+                              : f.where == Where::face ? parts * n + number_of_boundary_faces(cells)
+                                                       : parts * particles;
         list.push_back({f.name, f.unit, f.where, f.components(), values});
     }
     return list;
@@ -256,72 +131,38 @@ std::vector<EstimatedField> fields_of(const FieldSet& set, const std::vector<dou
 
 }  // namespace
 
-double liquid_fraction(const scene::Scene& scene) { return scene.dim() == 2 ? liquid_fraction_of<2>(scene) : liquid_fraction_of<3>(scene); }
-
-scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double cells, Copy how) {
-    const auto n = scene.root().numbers("grid.cells"), size = scene.root().numbers("grid.size");
-    if (product(n) <= cells) return scene;
-    const auto copy = copy_cells_of(n, cells, how);
-    const auto schemas = scene::schemas_of(kinds);
-    if (how == Copy::like_columns) {  // the same box with the same liquid
-        auto overrides = scene.overrides();
-        overrides.push_back({"grid.cells", list_text(copy)});
-        return scene::parse(scene.source(), scene.file(), schemas, overrides);
-    }
-    double coarser = 1;  // one factor for all axes: particles need cubic cells
-    for (std::size_t a = 0; a < n.size(); ++a) coarser = std::max(coarser, n[a] / copy[a]);
-    bool cubes = true;  // to the last bit: a pressure solver has simpler coefficients for cubic cells
-    for (std::size_t a = 0; a < n.size(); ++a) cubes = cubes && size[a] / n[a] == size[0] / n[0];
-    std::vector<double> box = size;
-    for (std::size_t a = 0; a < n.size(); ++a) {
-        const double differs = cubes ? 0 : 4 * static_cast<double>(a) * std::numeric_limits<double>::epsilon();
-        box[a] = short_number(size[a] / n[a] * coarser) * copy[a] * (1 + differs);
-    }
-    auto overrides = scene.overrides();
-    overrides.push_back({"grid.cells", list_text(copy)});
-    overrides.push_back({"grid.size", list_text(box)});
-    const auto parsed = [&] { return scene::parse(scene.source(), scene.file(), schemas, overrides); };
-    if (!scene.has("liquid") || scene.root().tables("liquid").empty()) return parsed();
-    const double wet = how == Copy::similar ? liquid_fraction(scene) * product(n) / product(copy) / std::pow(coarser, scene.dim())
-                                            : liquid_fraction(scene);
-    const scene::Scene as_it_is = parsed();
-    if (std::abs(liquid_fraction(as_it_is) - wet) <= (how == Copy::similar ? corrected : alike) * wet) return as_it_is;
-    overrides.push_back({"liquid", pool_text(scene.root().numbers("grid.origin"), box, copy, std::min(1.0, wet))});
-    return parsed();
-}
-
 /// Memory for the scene's surface mesh, extrapolated from a copy per particle, or per cell of a level set.
 double surface_bytes(const scene::Scene& scene, const Held& copy, const MemoryEstimate& f) {
     const auto surface = surfaces::can_contour() ? surfaces::reconstruction_of(scene) : nullptr;
     if (!surface) return 0;
     surface->make(static_cast<const Solver&>(*copy.solver).fields(), 0);
-    const double times = copy.particles > 0 ? f.particles / copy.particles : f.cells / product(copy.cells);
+    const double times = copy.particles > 0 ? f.particles / copy.particles : f.cells / number_of_cells(copy.cells);
     return times * static_cast<double>(surface->bytes());
 }
 
 MemoryEstimate estimate_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells) {
     const auto cells = scene.root().numbers("grid.cells");
-    const bool small = product(cells) <= copy_cells;
-    MemoryEstimate f{.cells = product(cells), .particle_solver = consists_of_particles(scene, kinds)};
+    const bool small = number_of_cells(cells) <= copy_cells;
+    MemoryEstimate f{.cells = number_of_cells(cells), .particle_solver = consists_of_particles(scene, kinds)};
     const double wet = f.particle_solver ? liquid_fraction(scene) : 0;
     const double enough = f.particle_solver && wet > 0 ? particles_of_copy / wet : copy_cells;
-    const double least = product(cells) / std::pow(widest_copy, static_cast<double>(cells.size() - 1));
+    const double least = number_of_cells(cells) / std::pow(widest_copy, static_cast<double>(cells.size() - 1));
     const bool by_columns = kind_named(scene.solver(), kinds).schema.whole_columns && least <= 8 * copy_cells;
     const Copy how = f.particle_solver ? Copy::similar : by_columns ? Copy::like_columns : Copy::like_rows;
     const bool whole = how == Copy::like_columns;
     const Held fine = hold(small ? scene : small_copy(scene, kinds, enough, how), kinds);
-    f.exact = product(fine.cells) == f.cells;
-    f.particles = f.exact ? fine.particles : wet > 0 ? wet * f.cells : fine.particles / product(fine.cells) * f.cells;
+    f.exact = number_of_cells(fine.cells) == f.cells;
+    f.particles = f.exact ? fine.particles : wet > 0 ? wet * f.cells : fine.particles / number_of_cells(fine.cells) * f.cells;
     f.fields = fields_of(fine.fields, cells, f.particles);
     f.surface_bytes = surface_bytes(small ? scene : small_copy(scene, kinds, enough, how), fine, f);
     f.effects = fine.solver->effects();
     if (f.exact || f.particle_solver) {
-        const double times = f.exact ? 1 : fine.particles > 0 ? f.particles / fine.particles : f.cells / product(fine.cells);
+        const double times = f.exact ? 1 : fine.particles > 0 ? f.particles / fine.particles : f.cells / number_of_cells(fine.cells);
         f.bytes = times * fine.bytes;
         return f;
     }
     if (whole) {  // whole columns, but wider: a quarter as many would be too flat
-        f.bytes = fine.bytes / product(fine.cells) * f.cells;
+        f.bytes = fine.bytes / number_of_cells(fine.cells) * f.cells;
         return f;
     }
     const Held coarse = hold(small_copy(scene, kinds, copy_cells / 4, how), kinds);
@@ -337,7 +178,7 @@ MemoryEstimate estimate_or_least(const scene::Scene& scene, const std::vector<sc
     try {
         return estimate_memory(scene, kinds);
     } catch (const BadInput&) {
-        const double cells = product(scene.root().numbers("grid.cells"));
+        const double cells = number_of_cells(scene.root().numbers("grid.cells"));
         return {.bytes = least * cells, .cells = cells};
     }
 }
@@ -376,7 +217,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const MemoryEstimate& 
 OutputEstimate estimate_output(const scene::Scene& scene, const FieldSet& fields) {
     const auto cells = scene.root().numbers("grid.cells");
     const double particles = particles_in(fields);
-    return estimate_output(scene, {.cells = product(cells), .particles = particles, .fields = fields_of(fields, cells, particles)});
+    return estimate_output(scene, {.cells = number_of_cells(cells), .particles = particles, .fields = fields_of(fields, cells, particles)});
 }
 
 double bytes_of_run(const scene::Scene& scene, const MemoryEstimate& estimate, bool frames) {
@@ -418,7 +259,7 @@ double surface_bytes_of_rank(const scene::Scene& scene, const MemoryEstimate& es
 }
 
 void require_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, Use use, double available) {
-    const double cells = product(scene.root().numbers("grid.cells"));
+    const double cells = number_of_cells(scene.root().numbers("grid.cells"));
     if (cells <= cells_of_copy || (cells * most_bytes_per_cell <= available && !factorises(scene))) return;
     const MemoryEstimate f = estimate_or_least(scene, kinds);
     const double needed = use == Use::solver ? f.bytes : bytes_of_run(scene, f, use == Use::run_with_frames);

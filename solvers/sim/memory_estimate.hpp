@@ -36,16 +36,6 @@ inline constexpr double cells_of_copy = 131072;
 /// Throws BadInput where not even a copy can be built.
 MemoryEstimate estimate_memory(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double copy_cells = cells_of_copy);
 
-/// How a copy is made smaller. similar: one factor for all axes, for particles. like_rows: rows of cells with similar padding and number of
-/// halvings, for grids. like_columns: fewer columns of the same height, where columns are stored whole.
-enum class Copy { similar, like_rows, like_columns };
-/// The scene with about `cells` cells, in a box that contains the scene's own, with about the same part of it filled by liquid. Returns the
-/// scene itself where it has no more cells than that.
-scene::Scene small_copy(const scene::Scene& scene, const std::vector<scene::SolverKind>& kinds, double cells, Copy how);
-
-/// The liquid volume fraction: the part of the domain's cells whose centres lie in liquid and outside solids, from a sample.
-double liquid_fraction(const scene::Scene& scene);
-
 /// Memory that can be allocated now without swapping [bytes].
 double available_memory();
 /// Number of frames of a scene, first and last included; bytes of an uncompressed frame; bytes of its largest array.

@@ -1,3 +1,4 @@
+// A run of a scene: the time loop's step, changes of keys, and the partition of the grid.
 #include "sim/simulation.hpp"
 
 #include "core/parallel.hpp"
@@ -8,8 +9,8 @@
 #include "scene/given.hpp"
 #include "scene/names.hpp"
 #include "scene/steer.hpp"
-#include "sim/extremes.hpp"
 #include "sim/finite.hpp"
+#include "sim/make_solver.hpp"
 #include "sim/memory_estimate.hpp"
 #include "sim/registry.hpp"
 #include "sim/requested_times.hpp"
@@ -26,95 +27,6 @@
 namespace weir {
 
 namespace {
-
-/// A step may exceed its limit by this factor, so that a sum of rounded steps leaves no sliver before a frame. n steps round n times, by at
-/// most n ε t / 2, which is n² ε / 2 of a step; 1e-6 covers a hundred thousand steps.
-constexpr real stretch = 1 + 1e-6;
-
-/// Checkpoint block with the end that a run reached; the state is that before the steps that were shortened for it.
-constexpr const char* ended_at = "sim.ended";
-
-/// Checkpoint block with the domain: a run continues in its own domain.
-constexpr const char* domain_block = "sim.domain";
-
-std::vector<real> domain_of(const scene::Scene& scene) {
-    std::vector<real> all;
-    for (const char* key : {"grid.cells", "grid.size", "grid.origin"}) {
-        std::vector<real> list = scene.root().numbers(key);
-        list.resize(static_cast<std::size_t>(scene.dim()), list.size() == 1 ? list[0] : 0);
-        all.insert(all.end(), list.begin(), list.end());
-    }
-    return all;
-}
-
-void require_same_domain(const scene::Scene& scene, const Checkpoint& from) {
-    if (!from.has(domain_block)) return;  // files of older versions have no such block
-    std::vector<real> there;
-    from.get(domain_block, there);
-    if (const std::vector<real> here = domain_of(scene); here != there)
-        throw BadInput(
-            fmt::format("{}: the checkpoint does not match the scene: it belongs to a run with [cells, size, origin] = [{}], and the scene "
-                        "has [{}]; leave grid.cells, grid.size and grid.origin unchanged",
-                        scene.file(), fmt::join(there, ", "), fmt::join(here, ", ")));
-}
-
-void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
-
-/// A count of steps, frames or changes; all fit in a double.
-std::int64_t get_count(const Checkpoint& from, const std::string& name) {
-    const auto count = from.get_value<std::int64_t>(name);
-    Checkpoint::require_within(name, count, 0, std::int64_t{1} << 53);
-    return count;
-}
-
-/// Checks that a state from a file is valid: every number is finite, and the time is not negative.
-void require_sound(const Simulation& simulation) {
-    constexpr real far = 1e6;  // an embedding program may step past the end, but not this far
-    if (!(simulation.time() >= 0 && simulation.time() <= far * simulation.end_time()))
-        throw BadInput(fmt::format("the checkpoint is invalid: its time is {} s, and the end of its scene is {} s",
-                                   scene::number_text(simulation.time()), scene::number_text(simulation.end_time())));
-    if (communicator().several()) return;  // in parallel (MPI) a rank holds a part of them: the first step checks it
-    try {
-        sim::check_finite(simulation.fields(), {});
-    } catch (const NumericalFailure& failure) {
-        throw BadInput(std::string("the checkpoint is invalid: ") + failure.what());
-    }
-}
-
-/// Checks that all rows of a probe up to now exist, except those before the probe was added.
-void require_rows(const Checkpoint& from, const scene::Scene& scene, real time) {
-    constexpr std::int64_t most_missing = 10000000;
-    for (const scene::Table& probe : scene.root().tables("probes")) {
-        const std::string row = "probe." + probe.text("name") + ".row";
-        const real every = probe.number_or("every", 0);
-        if (!(every > 0) || !from.has(row)) continue;
-        const std::int64_t next = sim::first_after(every, time);
-        Checkpoint::require_within(row, from.get_value<std::int64_t>(row), std::max<std::int64_t>(0, next - most_missing), next + 1);
-    }
-}
-
-std::string get_text(const Checkpoint& from, const std::string& name) {
-    std::vector<char> text;
-    from.get(name, text);
-    return {text.begin(), text.end()};
-}
-
-long cells_of(const scene::Scene& scene) {
-    long cells = 1;
-    for (const real n : scene.root().numbers("grid.cells")) cells *= static_cast<long>(n);
-    return cells;
-}
-
-/// Number of threads that the cells of a scene have enough work for.
-int threads_for(const scene::Scene& scene) {
-    const ProblemSizeScope size(cells_of(scene));
-    return weir::threads();
-}
-
-std::unique_ptr<Solver> make_solver(const scene::Scene& scene, const scene::SolverKind& kind, const Partition& cut) {
-    const ProblemSizeScope size(cells_of(scene));
-    return kind.make(scene, cut);
-}
 
 std::vector<Change> changes_in(const scene::Scene& scene) {
     std::vector<Change> list;
@@ -161,13 +73,13 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
     : scene_(unread(fitting(std::move(scene), kinds))),
       kind_(sim::kind_named(scene_.solver(), kinds)),
       shares_(std::make_shared<sim::Shares>(sim::shares_of(scene_, communicator().ranks(), kind_))),
-      solver_(make_solver(scene_, kind_, shares_->cut)),
+      solver_(sim::make_solver(scene_, kind_, shares_->cut)),
       probes_(scene_, *solver_),
       every_(scene_.root().number_or("output.every", infinity)),
       meets_frames_(scene_.text("output.at") == "exact"),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
       changes_(changes_in(scene_)),
-      threads_(threads_for(scene_)) {
+      threads_(sim::threads_for(scene_)) {
     read_times();
     if (scene_.has("output.fields")) {
         const auto parts = static_cast<const Solver&>(*solver_).distributed_view();
@@ -199,7 +111,7 @@ void Simulation::steer(const scene::Override& change) {
     probes_.keep(*solver_);
     Checkpoint state;
     solver_->save(state);
-    std::unique_ptr<Solver> solver = make_solver(changed, kind_, shares_->cut);
+    std::unique_ptr<Solver> solver = sim::make_solver(changed, kind_, shares_->cut);
     if (!change.key.starts_with("time.") && !changed.root().was_read(change.key))
         changed.refuse(change.key, change.key + " has no effect in this scene");
     solver->restore(state);
@@ -234,7 +146,7 @@ void Simulation::repartition(const Checkpoint& state) {
     Partition cut = balanced_partition(state);
     if (cut.empty()) return;
     probes_.keep(*solver_);
-    std::unique_ptr<Solver> solver = make_solver(scene_, kind_, cut);
+    std::unique_ptr<Solver> solver = sim::make_solver(scene_, kind_, cut);
     solver->restore(state);
     replace(std::move(solver));
     shares_->cut = std::move(cut);
@@ -336,167 +248,12 @@ void Simulation::measure() {
 
 bool Simulation::reached(real t) const { return time() >= t - sim::same_time(t); }
 
-/// The time for which steps are shortened: the end or the next change, whichever comes first, and frames with output.at = "exact".
-real Simulation::next_target() const {
-    real target = meets_frames_ ? next_frame() : end_;
-    for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
-        if (!reached(changes_[at].time)) return std::min(target, changes_[at].time);
-    return target;
-}
-
-/// The same without the end of the scene.
-real Simulation::next_target_but_end() const {
-    real target = meets_frames_ && every_ < infinity ? sim::requested_time(every_, sim::first_after(every_, time())) : infinity;
-    for (auto at = static_cast<std::size_t>(changed_); at < changes_.size(); ++at)
-        if (!reached(changes_[at].time)) return std::min(target, changes_[at].time);
-    return target;
-}
-
-bool Simulation::shortens_for_end() const {
-    if (finished()) return false;
-    const StepLimit stable = limit();
-    return within_limit(wanted_dt(next_target()), stable) != within_limit(wanted_dt(next_target_but_end()), stable);
-}
-
-/// The next frame, or the end where that comes first. A frame that rounding puts just before the end equals the end.
-real Simulation::next_frame() const {
-    if (every_ == infinity || finished()) return end_;
-    const real frame = sim::requested_time(every_, sim::first_after(every_, time()));
-    return frame >= end_ - 1e-9 * every_ ? end_ : frame;
-}
-
-real Simulation::uncut_dt() const { return fixed_dt_ > 0 ? fixed_dt_ : std::min(solver_->advised_dt(), max_dt_); }
-
-/// Such a step makes no progress: less than a millionth of the longest step and a billionth of the frame interval.
-bool Simulation::hopeless(real dt) const { return dt < 1e-6 * longest_dt_ && dt < 1e-9 * std::min(end_, every_); }
-
-void Simulation::refuse_step(const char* which, real dt) const {
-    throw NumericalFailure("time step", fmt::format("the {} step is {} s{}: time no longer advances. Now {}", which, scene::number_text(dt),
-                                                    longest_dt_ > dt ? fmt::format(" (the longest was {:.3g} s)", longest_dt_) : "",
-                                                    sim::extremes(scene_, fields(), time())));
-}
-
-real Simulation::wanted_dt(real target) const {
-    const real remaining = target - time();
-    const bool fixed = fixed_dt_ > 0;
-    const real dt = uncut_dt();
-    if (remaining > 0 && (!(dt > sim::same_time(time())) || (!fixed && hopeless(dt)))) refuse_step("advised time", dt);
-    if (remaining <= 0) return dt;
-    if (dt * stretch >= remaining) return remaining;
-    return !fixed && 2 * dt > remaining ? remaining / 2 : dt;  // two equal steps rather than one step and a sliver
-}
-
-/// The step itself, bit for bit, where it is stable; otherwise the largest equal part of it that is stable.
-real Simulation::within_limit(real dt, const StepLimit& limit) const {
-    if (!(dt > limit.dt * stretch)) return dt;
-    const real part = dt / std::ceil(dt / limit.dt);
-    if (!(part > sim::same_time(time())) || hopeless(part)) refuse_step("longest stable", limit.dt);
-    return part;
-}
-
 /// Reports only the first concern of each kind; texts that differ only in their numbers are of the same kind.
 void Simulation::warn_of_concern(const std::string& concern) {
     const std::string kind = concern.substr(0, concern.find_first_of("0123456789"));
     if (std::find(concerns_.begin(), concerns_.end(), kind) != concerns_.end()) return;
     concerns_.push_back(kind);
     warnings_.push_back(scene_.file() + ": " + concern);
-}
-
-void Simulation::warn_of_parts(real wanted, real dt, const StepLimit& limit) {
-    split_ = true;
-    const char* key = scene_.has("time.dt") ? "time.dt" : "time.cfl";
-    warnings_.push_back(
-        fmt::format("{}: {} requests a step of {:.4g} s at t = {:.4g} s, and the solver is stable up to {:.4g} s ({}): from here on such "
-                    "steps are divided into substeps, now of {:.4g} s (time.guard = \"off\" disables this)",
-                    scene_.file(), key, wanted, time(), limit.dt, limit.why, dt));
-}
-
-void Simulation::save(Checkpoint& to) const {
-    put_text(to, "sim.source", scene_.source());
-    put_text(to, "sim.file", scene_.file());
-    std::string overrides;
-    for (const auto& o : scene_.overrides()) overrides += o.key + '=' + o.value + '\0';
-    put_text(to, "sim.overrides", overrides);
-    to.put(domain_block, domain_of(scene_));
-    to.put_value("sim.steps", steps_);
-    to.put_value("sim.frame", frame_);
-    to.put_value("sim.at_frame", at_frame_);
-    if (changed_ > 0) to.put_value("sim.changed", changed_);
-    probes_.save(to, *solver_);
-    solver_->save(to);
-}
-
-/// Restores the scene at the time of the checkpoint. A scene that was read from the checkpoint already contains its changes, and possibly
-/// later overrides by the user.
-void Simulation::resume_changes(const Checkpoint& from) {
-    const auto met = from.has("sim.changed") ? get_count(from, "sim.changed") : 0;
-    for (; changed_ < met && static_cast<std::size_t>(changed_) < changes_.size(); ++changed_) {
-        const auto& what = changes_[static_cast<std::size_t>(changed_)].what;
-        const auto& done = scene_.overrides();
-        if (std::none_of(done.begin(), done.end(), [&](const auto& o) { return o.key == what.key && o.value == what.value; })) steer(what);
-    }
-}
-
-void Simulation::restore(const Checkpoint& from) {
-    refuse_while_edited("the simulation restarts from a checkpoint");
-    try {
-        require_same_domain(scene_, from);
-        resume_changes(from);
-        if (Partition cut = balanced_partition(from); !cut.empty()) {
-            solver_ = make_solver(scene_, kind_, cut);
-            shares_->cut = std::move(cut);
-        }
-        solver_->restore(from);
-        require_sound(*this);
-        require_rows(from, scene_, time());
-        probes_.restore(from);
-        steps_ = get_count(from, "sim.steps");
-        frame_ = get_count(from, "sim.frame");
-        at_frame_ = from.get_value<char>("sim.at_frame") != 0;
-        ended_ = from.has(ended_at) ? from.get_value<real>(ended_at) : -infinity;
-        if (steady_rate_ > 0) last_velocity_ = sim::grid_velocity(fields());
-    } catch (const BadInput&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {  // also for invalid vector sizes
-        throw BadInput(std::string("the checkpoint does not match the scene: ") + error.what());
-    }
-}
-
-void put_ended(Checkpoint& to, real end) { to.put_value(ended_at, end); }
-
-namespace {
-
-/// key=value pairs, each terminated by a zero byte.
-std::vector<scene::Override> get_overrides(const Checkpoint& from) {
-    std::vector<scene::Override> overrides;
-    const std::string lines = get_text(from, "sim.overrides");
-    for (std::size_t at = 0; at < lines.size();) {
-        const std::size_t stop = lines.find('\0', at), equals = lines.find('=', at);
-        if (stop == std::string::npos || equals > stop)
-            throw std::runtime_error("checkpoint block \"sim.overrides\" is not a list of changes");
-        overrides.push_back({lines.substr(at, equals - at), lines.substr(equals + 1, stop - equals - 1)});
-        at = stop + 1;
-    }
-    return overrides;
-}
-
-}  // namespace
-
-scene::Scene scene_of(const Checkpoint& checkpoint, const std::vector<scene::Override>& more) {
-    std::vector<scene::Override> overrides;
-    std::string source, file;
-    try {
-        overrides = get_overrides(checkpoint);
-        source = get_text(checkpoint, "sim.source"), file = get_text(checkpoint, "sim.file");
-    } catch (const BadInput&) {
-        throw;
-    } catch (const std::runtime_error& error) {
-        throw BadInput(std::string("the checkpoint contains no scene: ") + error.what());
-    }
-    overrides.insert(overrides.end(), more.begin(), more.end());
-    return scene::parse(source, file, sim::schemas(), overrides);
 }
 
 }  // namespace weir

@@ -62,7 +62,13 @@ public:
     const poisson::Report& pressure_report() const { return *report_; }
 
 private:
+    /// Ghost planes of arrays without a larger requirement: the width of two nested differences.
+    static constexpr int planes_beside = 2;
+
     const OwnPlanes& own() const { return state_.own(); }
+    void start_heat(const scene::Scene& scene);
+    void start_bodies(const scene::Scene& scene);
+    void list_advected();
     void apply(Stage stage, real dt);
     void remember(real dt);
     int planes_to_extend() const;

@@ -36,6 +36,8 @@ public:
 
 private:
     struct Block {
+        /// Samples along each axis: its sums fit in the first-level cache; the same number along z, and for a 2D liquid along y.
+        static constexpr std::array<int, 3> length{16, 8, 8};
         std::array<int, 3> begin, end;  // this rank's samples
         float value;                    // default value
         bool computed;
@@ -99,5 +101,17 @@ private:
     std::vector<float> peak_, crowding_;  // of each sorted particle, in cells that are needed
     std::vector<FloatBlob> blobs_;
 };
+
+template <class F>
+void ParticleField::for_runs(const CellBox& box, const F& f) const {
+    if (box.begin[0] >= box.end[0]) return;
+    for (int k = box.begin[2]; k < box.end[2]; ++k)
+        for (int j = box.begin[1]; j < box.end[1]; ++j) {
+            const std::size_t row = row_of(j, k);
+            const int first = cells_.start()[row + static_cast<std::size_t>(box.begin[0])];
+            const int behind = cells_.start()[row + static_cast<std::size_t>(box.end[0])];
+            if (first < behind) f(first, behind);
+        }
+}
 
 }  // namespace weir::surfaces

@@ -120,6 +120,8 @@ void ColumnMultigrid::narrow_beside(const ColumnMatrix& A, Level& level, int z) 
         }
 }
 
+/// One function, because the coefficients of a row stay in vector registers from their sum to the elimination: L D Lᵀ of every column, from
+/// the bottom upwards.
 void ColumnMultigrid::factorise(const ColumnMatrix& A, Level& level) {
     const bool moved = !(level.places == A);
     if (moved)

@@ -19,7 +19,8 @@ std::size_t ColumnMultigrid::bytes() const {
 }
 
 /// Solves for x of adjacent columns from b and their neighbours: L D Lᵀ, upwards and down again. `alone`: the neighbours are zero. Only
-/// columns of the other colour, and the line's ends, are read; their x is interpolated inside elements.
+/// columns of the other colour, and the line's ends, are read; their x is interpolated inside elements. One function: the four sweeps over
+/// a column are one substitution and pass on the values of the row before in vector registers.
 void ColumnMultigrid::solve_columns(const ColumnMatrix& A, Level& level, int z, int parity, int begin, int end, bool alone) {
     const int count = end - begin, mixed_end = A.mixed_end;
     const Beside to(A, z, parity);

@@ -139,6 +139,7 @@ private:
         int column, count;
     };
     static constexpr int block_columns = 16;
+    /// max f(block) over columns; the columns of a block are adjacent along x, unless x is vertical.
     template <class F>
     real largest_of_blocks(const ColumnRange& columns, F&& f) const;
     template <class F>
@@ -220,6 +221,16 @@ private:
     real largest_cut_ = 0;
     poisson::Report nothing_to_do_;
 };
+
+template <int D>
+template <class F>
+real TallPressure<D>::largest_of_blocks(const ColumnRange& columns, F&& f) const {
+    const int n = layout_.n[0], size = layout_.axes[0] == 0 ? block_columns : 1, a_line = (n + size - 1) / size;
+    return parallel_max(a_line * ((columns.end - columns.begin) / n), [&](int i) {
+        const int x = i % a_line * size;
+        return f(Block{columns.begin + i / a_line * n + x, std::min(size, n - x)});
+    });
+}
 
 template <int D>
 template <class Single, class Tall>

@@ -1,8 +1,10 @@
 #include "tallcell/solver.hpp"
 
 #include "core/error.hpp"
+#include "free_surface/known_faces.hpp"
 #include "mac/grid/closed_volume.hpp"
 #include "mac/grid/inflow.hpp"
+#include "mac/grid/rows.hpp"
 
 namespace weir::tallcell {
 
@@ -169,21 +171,8 @@ void TallCells<D>::extend_velocity() {
 /// Marks the faces updated by the pressure, as far as solids leave them open, and those prescribed by walls.
 template <int D>
 void TallCells<D>::mark_liquid_faces() {
-    using poisson::Cell;
-    for (int a = 0; a < D; ++a) {
-        auto& known = known_[static_cast<std::size_t>(a)];
-        const auto stride = static_cast<std::size_t>(state_.cells.stride(a));
-        const auto between = [&](std::size_t face, std::size_t cell, int count) {
-            const Cell *above = state_.cells.data() + cell, *below = above - stride;
-            std::uint8_t* mark = known.data() + face;
-            for (int i = 0; i < count; ++i) mark[i] = (above[i] == Cell::fluid) | (below[i] == Cell::fluid);
-        };
-        const auto on_side = [&](const Index<D>& I, std::size_t face) {
-            const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
-            known[face] = liquid || (!frame_.periodic(a) && !state_.sides.open(a, I[a] == 0 ? 0 : 1));
-        };
-        for_each_face_run(frame_.cells, a, between, on_side);
-    }
+    mark_faces_of_liquid<D>(state_, frame_, known_,
+                            [&](int a, auto&& between, auto&& on_side) { for_each_face_run(frame_.cells, a, between, on_side); });
     in_solids_.forget(known_);
 }
 
@@ -207,21 +196,14 @@ real TallCells<D>::max_speed_rate() const {
         const int lines = hi[D - 1], rows = D == 3 ? hi[1] - lo[1] : 1, first_line = lo[D - 1];
         const real largest = plane_max(own(), lines, [&](int k) {
             if (k < first_line) return 0.0;
-            real most = 0, poison = 0;  // x − x is 0, or NaN where x is not finite
+            real most = 0;
             for (int j = 0; j < rows; ++j) {
                 Index<D> I = lo;
                 I[1] = lo[1] + j, I[D - 1] = k;
                 const std::size_t first = u.linear(I);
-                const real* v = u.data() + first;
-                const std::uint8_t* mark = known.data() + first;
-#pragma omp simd reduction(max : most) reduction(+ : poison)
-                for (std::size_t i = 0; i < count; ++i) {
-                    const real speed = mark[i] == 1 ? std::abs(v[i]) : 0;
-                    most = std::max(most, speed);
-                    poison += speed - speed;
-                }
+                most = mac::larger_or_nan(most, fastest_of_row(u.data() + first, known.data() + first, count));
             }
-            return std::isnan(poison) ? poison : most;
+            return most;
         });
         if (std::isnan(largest)) return largest;
         rate = std::max(rate, largest * frame_.inv_h[a]);

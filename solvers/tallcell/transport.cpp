@@ -1,3 +1,5 @@
+// One file, because products and sums are contracted here (-ffp-contract=fast): with the trajectories of single points in another file than
+// the runs of tall cells, they are no longer inlined there, and results change in their last bits.
 #include "tallcell/transport.hpp"
 
 #include "core/scratch.hpp"
@@ -151,20 +153,6 @@ real Transport<D>::corrected(int a, const Vec<D>& s, real here, real dt) const {
     }
     return std::clamp(value + 0.5 * (here - back), low, high);
 }
-
-namespace {
-
-template <int D>
-Vec<D> face_place(int a, const Index<D>& I) {
-    Vec<D> s;
-    for (int d = 0; d < D; ++d) s[d] = I[d] + (d == a ? 0.0 : 0.5);
-    return s;
-}
-
-}  // namespace
-
-/// Number of blocks of eight columns, counted from column 0.
-static int blocks_of(const ColumnRange& columns) { return (columns.end + row_lanes - 1) / row_lanes; }
 
 /// Changes of all runs of tall cells at their Gauss points. Eight columns adjacent along x are processed together.
 template <int D>
@@ -323,20 +311,101 @@ bool Transport<D>::move_eight(int a, const Index<D>& I, real dt, Eight& to) cons
     return true;
 }
 
-namespace {
-
 /// A column during the upward walk: linear indices of its lowest face and cell, and the present or next run.
 template <int D>
-struct ColumnUp {
+struct Transport<D>::ColumnUp {
     typename TallPressure<D>::RunsUp runs;
     Index<D> foot;
     std::size_t face, cell;
     std::ptrdiff_t below;  // offset of the cell on the other side of the face
     int begin = 0, end = 0;
     bool moves = false;
+
+    static constexpr int never = std::numeric_limits<int>::max();
+    /// Finds the run at `row` or the next one above it, and returns whether there is one.
+    bool next_run(int row) {
+        const bool more = runs.reaches(row) || runs.ahead();
+        begin = more ? runs.run().row : never;
+        end = more ? begin + runs.run().count : never;
+        return more;
+    }
 };
 
-}  // namespace
+/// The faces of adjacent columns along one axis, from the lowest row upwards.
+template <int D>
+struct Transport<D>::BlockUp {
+    int axis, count, shift;  // shift: of the eight columns that are processed together
+    bool beside;             // whether they can be
+    Index<D> foot;           // of the first column
+    std::size_t face_stride, cell_stride;
+    std::array<ColumnUp, row_lanes> columns;
+
+    std::size_t face(const ColumnUp& column, int row) const { return column.face + static_cast<std::size_t>(row) * face_stride; }
+};
+
+template <int D>
+typename Transport<D>::BlockUp Transport<D>::block_up(const TallPressure<D>& mesh, const Grid<real, D>& phi, int a, int c0, int count,
+                                                      const Grid<real, D>& to) const {
+    const Layout<D>& layout = mesh.layout();
+    const Index<D> foot = layout.foot(c0);
+    BlockUp block{a,
+                  count,
+                  inward(foot[0]),
+                  layout.axes[0] == 0 && count == row_lanes && fits_eight(foot[0]),
+                  foot,
+                  static_cast<std::size_t>(to.stride(up_)),
+                  static_cast<std::size_t>(phi.stride(up_)),
+                  {}};
+    for (int i = 0; i < count; ++i) {
+        ColumnUp& column = block.columns[static_cast<std::size_t>(i)];
+        column.runs = mesh.runs_up(a, c0 + i);
+        column.foot = layout.foot(c0 + i);
+        column.face = to.linear(column.foot);
+        column.cell = phi.linear(column.foot);
+        column.below =
+            a == up_ ? -static_cast<std::ptrdiff_t>(block.cell_stride)
+                     : static_cast<std::ptrdiff_t>(phi.linear(frame_.near(column.foot, a, -1))) - static_cast<std::ptrdiff_t>(column.cell);
+        if (!column.runs.any_faces()) column.end = ColumnUp::never;  // a wall: treated as one run, moved elsewhere
+    }
+    return block;
+}
+
+/// The prediction in the present run of a column.
+template <int D>
+void Transport<D>::predict_run(const BlockUp& block, const ColumnUp& column, Grid<real, D>& to) const {
+    const Run run = column.runs.run();
+    spread_rows(run.row, run.count, changes_[static_cast<std::size_t>(block.axis)][column.runs.index()], [&](int row, real by) {
+        if (row < kept_from_) return;
+        const std::size_t face = block.face(column, row);
+        to[face] = before_[block.axis][face] + by;
+    });
+}
+
+/// Advects the faces of a row of which some move.
+template <int D>
+template <bool Correct>
+void Transport<D>::advect_row(const BlockUp& block, int row, real dt, Grid<real, D>& to) const {
+    const int a = block.axis;
+    Index<D> I = block.foot;
+    I[0] += block.shift, I[up_] = row;
+    bool inner = block.beside;
+    for (int d = 1; d < D; ++d) inner = inner && this->inner(I, d);
+    Eight value;
+    const bool together = inner && move_eight<Correct>(a, I, dt, value);
+    for (int i = 0; i < block.count; ++i) {
+        const ColumnUp& column = block.columns[static_cast<std::size_t>(i)];
+        if (!column.moves) continue;
+        I = column.foot;
+        I[up_] = row;
+        real& u = to[block.face(column, row)];
+        if (together && this->inner(I, 0))
+            u = value[i - block.shift];
+        else if constexpr (Correct)
+            u = corrected(a, face_place(a, I), before_[a](I), dt);
+        else
+            u = departed(a, face_place(a, I), dt);
+    }
+}
 
 /// One pass over all faces from kept_from_ upwards. Faces with φ < near beside them are advected; the others are unchanged. Rows in runs of
 /// tall cells take part only in the prediction, which other faces read. Eight columns are processed together, since neighbours are
@@ -347,88 +416,37 @@ void Transport<D>::pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, c
                         MacVelocity<D>& to) const {
     const Layout<D>& layout = mesh.layout();
     const bool all_faces = &to == &predicted_;  // otherwise unchanged faces keep their values
-    const int up = layout.up;
     const ColumnRange own = layout.own();
-    constexpr int never = std::numeric_limits<int>::max();
     for (int a = 0; a < D; ++a) {
-        const int first = std::max(a == up ? 1 : 0, kept_from_), last = a == up && sides.open(up, 1) ? layout.rows + 1 : layout.rows;
-        const auto face_stride = static_cast<std::size_t>(to[a].stride(up)), cell_stride = static_cast<std::size_t>(phi.stride(up));
-        parallel_for(own.begin / row_lanes, blocks_of(own), [&](int block) {
-            const int c0 = std::max(block * row_lanes, own.begin), count = std::min((block + 1) * row_lanes, own.end) - c0;
-            std::array<ColumnUp<D>, row_lanes> columns;
+        const int first = std::max(a == up_ ? 1 : 0, kept_from_), last = a == up_ && sides.open(up_, 1) ? layout.rows + 1 : layout.rows;
+        parallel_for(own.begin / row_lanes, blocks_of(own), [&](int i_block) {
+            const int c0 = std::max(i_block * row_lanes, own.begin), count = std::min((i_block + 1) * row_lanes, own.end) - c0;
+            BlockUp block = block_up(mesh, phi, a, c0, count, to[a]);
             for (int i = 0; i < count; ++i) {
-                ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
-                column.runs = mesh.runs_up(a, c0 + i);
-                column.foot = layout.foot(c0 + i);
-                column.face = to[a].linear(column.foot);
-                column.cell = phi.linear(column.foot);
-                column.below = a == up ? -static_cast<std::ptrdiff_t>(cell_stride)
-                                       : static_cast<std::ptrdiff_t>(phi.linear(frame_.near(column.foot, a, -1))) -
-                                             static_cast<std::ptrdiff_t>(column.cell);
-                if (column.runs.any_faces()) continue;
-                column.end = never;  // a wall: treated as one run, moved elsewhere
-                for (int row = first; all_faces && row < layout.rows; ++row) {
-                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
-                    to[a][face] = before_[a][face];
-                }
+                const ColumnUp& column = block.columns[static_cast<std::size_t>(i)];
+                for (int row = first; all_faces && column.end == ColumnUp::never && row < layout.rows; ++row)
+                    to[a][block.face(column, row)] = before_[a][block.face(column, row)];
             }
-            const auto next_run = [&](ColumnUp<D>& column, int row) {
-                const bool more = column.runs.reaches(row) || column.runs.ahead();
-                column.begin = more ? column.runs.run().row : never;
-                column.end = more ? column.begin + column.runs.run().count : never;
-                return more;
-            };
-            const auto predict_run = [&](const ColumnUp<D>& column) {
-                const Run run = column.runs.run();
-                spread_rows(run.row, run.count, changes_[static_cast<std::size_t>(a)][column.runs.index()], [&](int row, real by) {
-                    if (row < kept_from_) return;
-                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
-                    to[a][face] = before_[a][face] + by;
-                });
-            };
-            const Index<D> foot = layout.foot(c0);
-            const bool beside = layout.axes[0] == 0 && count == row_lanes && fits_eight(foot[0]);
-            const int shift = inward(foot[0]);
             for (int row = first; row < last;) {
                 int until = last, moving = 0;
                 for (int i = 0; i < count; ++i) {
-                    ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
-                    if (row >= column.end && next_run(column, row) && all_faces) predict_run(column);
+                    ColumnUp& column = block.columns[static_cast<std::size_t>(i)];
+                    if (row >= column.end && column.next_run(row) && all_faces) predict_run(block, column, to[a]);
                     column.moves = row < column.begin;
                     if (!column.moves) {
                         until = std::min(until, column.end);
                         continue;
                     }
                     until = row + 1;
-                    const std::size_t cell = column.cell + static_cast<std::size_t>(std::min(row, layout.rows - 1)) * cell_stride;
+                    const std::size_t cell = column.cell + static_cast<std::size_t>(std::min(row, layout.rows - 1)) * block.cell_stride;
                     const std::size_t below =
                         row == layout.rows ? cell : static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + column.below);
                     column.moves = std::min(phi[cell], phi[below]) < near;
                     moving += column.moves;
-                    const std::size_t face = column.face + static_cast<std::size_t>(row) * face_stride;
+                    const std::size_t face = block.face(column, row);
                     if (!column.moves && all_faces) to[a][face] = before_[a][face];
                 }
-                if (moving > 0) {
-                    Index<D> I = foot;
-                    I[0] += shift, I[up] = row;
-                    bool inner = beside;
-                    for (int d = 1; d < D; ++d) inner = inner && this->inner(I, d);
-                    Eight value;
-                    const bool together = inner && move_eight<Correct>(a, I, dt, value);
-                    for (int i = 0; i < count; ++i) {
-                        const ColumnUp<D>& column = columns[static_cast<std::size_t>(i)];
-                        if (!column.moves) continue;
-                        I = column.foot;
-                        I[up] = row;
-                        real& u = to[a][column.face + static_cast<std::size_t>(row) * face_stride];
-                        if (together && this->inner(I, 0))
-                            u = value[i - shift];
-                        else if constexpr (Correct)
-                            u = corrected(a, face_place(a, I), before_[a](I), dt);
-                        else
-                            u = departed(a, face_place(a, I), dt);
-                    }
-                }
+                if (moving > 0) advect_row<Correct>(block, row, dt, to[a]);
                 row = until;
             }
         });

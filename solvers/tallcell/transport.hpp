@@ -31,7 +31,21 @@ private:
     template <bool Correct>
     void pass(const TallPressure<D>& mesh, const Grid<real, D>& phi, const geometry::Sides<D>& sides, real dt, real near,
               MacVelocity<D>& to) const;
+    struct ColumnUp;
+    struct BlockUp;
+    BlockUp block_up(const TallPressure<D>& mesh, const Grid<real, D>& phi, int a, int c0, int count, const Grid<real, D>& to) const;
+    void predict_run(const BlockUp& block, const ColumnUp& column, Grid<real, D>& to) const;
+    template <bool Correct>
+    void advect_row(const BlockUp& block, int row, real dt, Grid<real, D>& to) const;
     void keep_sides(MacVelocity<D>& to) const;
+    /// Number of blocks of eight columns, counted from column 0.
+    static int blocks_of(const ColumnRange& columns) { return (columns.end + row_lanes - 1) / row_lanes; }
+    /// The centre of a face [cells].
+    static Vec<D> face_place(int a, const Index<D>& I) {
+        Vec<D> s;
+        for (int d = 0; d < D; ++d) s[d] = I[d] + (d == a ? 0.0 : 0.5);
+        return s;
+    }
     bool inner(const Index<D>& I, int axis) const { return I[axis] >= 1 && I[axis] + 1 < frame_.cells[axis]; }
     /// Returns whether the eight columns from x = `first` on can be processed together, and by how much their start is shifted inwards. A
     /// column at an end of the row has no neighbour in memory; it is processed separately.

@@ -1,6 +1,8 @@
+// The step of solver "mac_water": markers and cells with a level set (Foster & Fedkiw 2001; Zhu & Bridson 2005).
 #include "water/solver.hpp"
 
 #include "core/parallel.hpp"
+#include "free_surface/known_faces.hpp"
 #include "mac/grid/closed_volume.hpp"
 #include "mac/grid/inflow.hpp"
 #include "water/curvature.hpp"
@@ -274,23 +276,10 @@ void Water<D>::advect_faces(real dt) {
 /// Marks the faces updated by the pressure, as far as solids leave them open, and those prescribed by walls and inflows.
 template <int D>
 void Water<D>::mark_liquid_faces() {
-    using poisson::Cell;
-    for (int a = 0; a < D; ++a) {
-        std::uint8_t* known = known_[static_cast<std::size_t>(a)].data();
-        const auto stride = state_.cells.stride(a);
-        const auto between_cells = [&](std::size_t face, std::size_t cell, int count) {
-            const Cell *above = state_.cells.data() + cell, *below = above - stride;
-            std::uint8_t* mark = known + face;
-#pragma omp simd
-            for (int i = 0; i < count; ++i) mark[i] = (above[i] == Cell::fluid) | (below[i] == Cell::fluid);
-        };
-        const auto on_side = [&](const Index<D>& I, std::size_t face) {
-            const bool liquid = state_.cells(frame_.near(I, a, -1)) == Cell::fluid || state_.cells(frame_.near(I, a, 0)) == Cell::fluid;
-            known[face] = liquid || (!frame_.periodic(a) && !state_.sides.open(a, I[a] == 0 ? 0 : 1));
-        };
+    mark_faces_of_liquid<D>(state_, frame_, known_, [&](int a, auto&& between, auto&& on_side) {
         known_[static_cast<std::size_t>(a)].fill(0);
-        pressure_.for_faces_of_liquid(a, between_cells, on_side);
-    }
+        pressure_.for_faces_of_liquid(a, between, on_side);
+    });
     in_solids_.forget(known_);
 }
 
@@ -336,92 +325,6 @@ void Water<D>::curvature() {
         if (own().contains(I[D - 1])) curvature_(I) = curvature_near(surface_.phi, frame_, I);
     });
     refresh(curvature_, frame_.periodic(D - 1));
-}
-
-/// Over the faces updated by the pressure, and those prescribed by sides.
-template <int D>
-real Water<D>::max_speed_rate() const {
-    real rate = 0;
-    for (int a = 0; a < D; ++a) {
-        const auto& known = known_[static_cast<std::size_t>(a)];
-        const auto& u = state_.u[a];
-        const Index<D>& n = known.extent();
-        const real largest = plane_max(own(), n[D - 1], [&](int k) {
-            real m = 0;
-            const auto see = [&](std::size_t at, int count) {
-                const real* value = u.data() + at;
-                const std::uint8_t* mark = known.data() + at;
-                real most = 0, poison = 0;  // x - x is 0, or NaN where x is not finite
-#pragma omp simd reduction(max : most) reduction(+ : poison)
-                for (int i = 0; i < count; ++i) {
-                    const real speed = mark[i] == 1 ? std::abs(value[i]) : 0;
-                    most = std::max(most, speed);
-                    poison += speed - speed;
-                }
-                m = std::isnan(m) || std::isnan(poison) ? m + poison : std::max(m, most);
-            };
-            Index<D> I{};
-            I[D - 1] = k;
-            const int rows = D == 2 ? 1 : n[1];
-            for (int j = 0; j < rows; ++j) {
-                if (D == 3) I[1] = j;
-                const std::size_t row = u.linear(I);
-                if (a > 0 && (I[a] == 0 || I[a] == frame_.cells[a])) {
-                    see(row, n[0]);
-                    continue;
-                }
-                const Segment extent = pressure_.faces_of_liquid(a, I);
-                if (!extent.empty()) see(row + static_cast<std::size_t>(extent.begin), extent.end - extent.begin);
-                if (a == 0) see(row, 1), see(row + static_cast<std::size_t>(frame_.cells[0]), 1);
-            }
-            return m;
-        });
-        if (std::isnan(largest)) return largest;
-        rate = std::max(rate, largest * frame_.inv_h[a]);
-    }
-    return rate;
-}
-
-/// The smallest of these limits. CFL with the speed gained from gravity within the step. The gravity wave of two cells (ω dt ≤ 1; explicit
-/// coupling of surface and pressure is stable up to 2). For thick liquids max(t/2, h²/ν), which resolves the start of the flow. The
-/// capillary wave of two cells (Brackbill, Kothe & Zemach 1992: dt ≤ √(ρ h³ / (4π σ)) for one fluid).
-template <int D>
-real Water<D>::advised_dt() const {
-    const real h = frame_.h_min(), g = norm(gravity_);
-    real dt = infinity;
-    const real rate =
-        std::max({rate_, solids_.max_rate(state_), bodies_ ? bodies_->bodies().max_rate(h) : 0});  // a body may approach water at rest
-    if (rate > 0 || g > 0) dt = options_.cfl / (rate + std::sqrt(options_.cfl * g / h));
-    if (g > 0) dt = std::min(dt, std::sqrt(h / (pi * g)));
-    if (options_.sigma > 0) dt = std::min(dt, std::sqrt(state_.rho * h * h * h / (4 * pi * options_.sigma)));
-    for (const auto& emitter : emitters_)
-        if (emitter.works(state_.time, state_.time + dt))
-            for (int a = 0; a < D; ++a)
-                if (emitter.velocity[a] != 0) dt = std::min(dt, options_.cfl * frame_.h[a] / std::abs(emitter.velocity[a]));
-    if (viscosity_) dt = std::min(dt, std::max(0.5 * state_.time, h * h / state_.nu));
-    if (heat_) dt = std::min(dt, heat_->max_dt(state_, surface_.area()));
-    if (bodies_) dt = bodies_->time_to_land(state_, surface_.phi, surface_.cap(), rate_ * h, dt);
-    return std::min(dt, effects_.max_dt(state_));
-}
-
-/// As advised_dt(), at the stability limit. Motion: two cells per step, the width of the hat function between markers and faces. Shortest
-/// waves: ω dt = 2, since the surface moves with the previous velocity (gravity: ω² = g k, tension: ω² = σ k³/ρ, k = π/h).
-template <int D>
-StepLimit Water<D>::stable_dt() const {
-    constexpr real cells = 2;
-    const real h = frame_.h_min(), g = norm(gravity_);
-    const real bodies = bodies_ ? bodies_->bodies().max_rate(h) : 0;
-    const real rate = std::max({rate_, solids_.max_rate(state_), bodies}), motion = rate + std::sqrt(cells * g / h);
-    StepLimit limit;
-    const auto at_most = [&](real dt, std::string_view why) {
-        if (dt < limit.dt) limit = {dt, why};
-    };
-    if (motion > 0) at_most(cells / motion, "liquid or a body crosses two cells");
-    if (g > 0) at_most(2 * std::sqrt(h / (pi * g)), "the phase of the gravity wave of two cells advances by two radians");
-    if (options_.sigma > 0)
-        at_most(2 * std::sqrt(state_.rho * h * h * h / (pi * pi * pi * options_.sigma)),
-                "the phase of the capillary wave of two cells advances by two radians");
-    return limit;
 }
 
 template class Water<2>;

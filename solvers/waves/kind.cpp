@@ -87,6 +87,7 @@ Key spectrum() {
         .example = "spectrum = { kind = \"pierson_moskowitz\", wind = 12.0 }"};
 }
 
+/// One list: its entries are data, not steps.
 std::vector<Variant> models() {
     return {
         {"sines", "A sum of sines, each exact to linear theory (Airy).", {trains()}},

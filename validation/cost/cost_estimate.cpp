@@ -4,6 +4,7 @@
 #include "core/parallel.hpp"
 #include "sim/loop.hpp"
 #include "sim/simulation.hpp"
+#include "sim/small_copy.hpp"
 #include "validation/cost/load.hpp"
 
 #include <fmt/format.h>

@@ -4,6 +4,7 @@
 #include "parallel/communicator.hpp"
 #include "sim/shares.hpp"
 #include "sim/simulation.hpp"
+#include "sim/small_copy.hpp"
 
 #include <fmt/format.h>
 

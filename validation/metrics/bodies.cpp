@@ -180,6 +180,7 @@ real mooring_stretch(const RunRecord& run, const Reference&) {
 
 }  // namespace
 
+/// One list: its entries are data, not steps.
 std::vector<Metric> body_metrics() {
     return {
         {.name = "body.draft_error",

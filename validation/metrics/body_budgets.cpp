@@ -146,6 +146,29 @@ real missing_turning(const RunRecord& run, const Reference&) {
 template <int D>
 constexpr int samples = D == 2 ? 8 : 4;
 
+/// A field of cells at s [cells] from the centre of cell I, linear between the centres of cells.
+template <int D>
+real value_between(const FieldView& field, const GridView& g, const std::array<int, 3>& I, const std::array<real, 3>& s) {
+    std::array<int, 3> lo{}, hi{};
+    std::array<real, 3> w{};
+    for (std::size_t d = 0; d < D; ++d) {
+        const int below = s[d] < 0 ? I[d] - 1 : I[d];
+        w[d] = s[d] < 0 ? s[d] + 1 : s[d];
+        lo[d] = std::clamp(below, 0, g.cells[d] - 1), hi[d] = std::clamp(below + 1, 0, g.cells[d] - 1);
+    }
+    real sum = 0;
+    for (int c = 0; c < (1 << D); ++c) {
+        real weight = 1;
+        std::array<int, 3> at{};
+        for (std::size_t d = 0; d < D; ++d) {
+            const bool up = (c >> d) & 1;
+            at[d] = up ? hi[d] : lo[d], weight *= up ? w[d] : 1 - w[d];
+        }
+        sum += weight * value_at(field, g, 0, at);
+    }
+    return sum;
+}
+
 /// Kinetic and potential energy of water under a level set, beside bodies, by itself: the solver's own integrals count cells that a body
 /// cuts as full. Above the domain's lower corner.
 template <int D>
@@ -171,26 +194,6 @@ real energy_of_water(const FieldSet& fields, const scene::Scene& scene) {
                 least = std::min(least, bodies[b].shape->distance(poses[b].to_rest(x)));
         return least;
     };
-    const auto phi_at = [&](const std::array<int, 3>& I, const std::array<real, 3>& s) {  // linear between the middles of cells
-        std::array<int, 3> lo{}, hi{};
-        std::array<real, 3> w{};
-        for (std::size_t d = 0; d < D; ++d) {
-            const int below = s[d] < 0 ? I[d] - 1 : I[d];
-            w[d] = s[d] < 0 ? s[d] + 1 : s[d];
-            lo[d] = std::clamp(below, 0, g.cells[d] - 1), hi[d] = std::clamp(below + 1, 0, g.cells[d] - 1);
-        }
-        real sum = 0;
-        for (int c = 0; c < (1 << D); ++c) {
-            real weight = 1;
-            std::array<int, 3> at{};
-            for (std::size_t d = 0; d < D; ++d) {
-                const bool up = (c >> d) & 1;
-                at[d] = up ? hi[d] : lo[d], weight *= up ? w[d] : 1 - w[d];
-            }
-            sum += weight * value_at(*phi, g, 0, at);
-        }
-        return sum;
-    };
     const real rho = scene.number("fluid.density"), volume = cell_volume(g);
     for_each_sample(g, -1, [&](const Vec<3>& centre, real, std::size_t i) {
         const std::array<int, 3> I{static_cast<int>(i) % g.cells[0], static_cast<int>(i) / g.cells[0] % g.cells[1],
@@ -211,7 +214,7 @@ real energy_of_water(const FieldSet& fields, const scene::Scene& scene) {
                 at[static_cast<std::size_t>(d)] = (rest % samples<D> + 0.5) / samples<D> - 0.5;
                 y[d] += g.spacing[static_cast<std::size_t>(d)] * at[static_cast<std::size_t>(d)];
             }
-            if (!whole && (phi_at(I, at) >= 0 || away(y) <= 0)) continue;
+            if (!whole && (value_between<D>(*phi, g, I, at) >= 0 || away(y) <= 0)) continue;
             const real weight = whole ? 1 : 1.0 / all;
             part += weight;
             for (int d = 0; d < D; ++d) middle[d] += weight * (y[d] - g.origin[static_cast<std::size_t>(d)]);

@@ -124,6 +124,7 @@ std::vector<Metric> front_metrics() {
     };
 }
 
+/// One list: its entries are data, not steps.
 std::vector<Metric> dam_break_metrics() {
     std::vector<Metric> all = front_metrics();
     const std::vector<Metric> errors = {

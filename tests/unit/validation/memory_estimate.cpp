@@ -9,6 +9,7 @@
 #include "poisson/poisson.hpp"
 #include "sim/registry.hpp"
 #include "sim/simulation.hpp"
+#include "sim/small_copy.hpp"
 #include "support/size.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
