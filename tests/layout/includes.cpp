@@ -73,6 +73,7 @@ const std::map<std::string, int>& level() {
         {"solvers/poisson", 3},      {"solvers/particles", 4},     {"solvers/rigid", 3},
         {"solvers/mac", 4},          {"solvers/free_surface", 5},  {"solvers/smoke", 6},
         {"solvers/water", 6},        {"solvers/studies", 6},       {"solvers/tallcell", 6},
+        {"solvers/two_phase", 6},
         {"solvers/heightfield", 6},  {"solvers/waves", 6},         {"solvers/sph", 6},
         {"solvers/pbf", 6},          {"solvers/sim", 8},           {"solvers/output", 7},
         {"solvers/parallel/mpi", 8}, {"validation/references", 9}, {"validation/metrics", 9},
