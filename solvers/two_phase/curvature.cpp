@@ -126,9 +126,9 @@ void find_curvature(const Interface<D>& s, WithoutHeights otherwise, Curvature<D
     });
 }
 
-#define WEIR_INSTANTIATE(D)                                                      \
-    template bool is_interfacial(const Padded<D>&, const Index<D>&);             \
-    template real curvature_by_heights(const Interface<D>&, const Index<D>&);    \
+#define WEIR_INSTANTIATE(D)                                                   \
+    template bool is_interfacial(const Padded<D>&, const Index<D>&);          \
+    template real curvature_by_heights(const Interface<D>&, const Index<D>&); \
     template void find_curvature(const Interface<D>&, WithoutHeights, Curvature<D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -8,9 +8,9 @@ namespace weir::two_phase {
 namespace {
 
 constexpr int unknowns(int dim) { return dim == 2 ? 3 : 6; }
-constexpr real least_fraction = 1e-6;   // the plane of a cell with less of one phase has an uncertain normal
-constexpr real least_cosine = 0.2;      // between normals: planes of another part of the surface are left out
-constexpr real squared_reach = 6.5;     // cells²: the 5^D cells without their corners
+constexpr real least_fraction = 1e-6;  // the plane of a cell with less of one phase has an uncertain normal
+constexpr real least_cosine = 0.2;     // between normals: planes of another part of the surface are left out
+constexpr real squared_reach = 6.5;    // cells²: the 5^D cells without their corners
 
 /// D − 1 unit vectors across n.
 template <int D>
@@ -175,9 +175,9 @@ real curvature_by_fit(const Interface<D>& s, const Index<D>& I) {
     return std::clamp<real>(curvature_of(g), 1 - D, D - 1) / h;
 }
 
-#define WEIR_INSTANTIATE(D)                                                     \
-    template Vec<D> physical_normal(const Interface<D>&, const Index<D>&);      \
-    template bool middle_of_cut(const Plane<D>&, Vec<D>&);                      \
+#define WEIR_INSTANTIATE(D)                                                \
+    template Vec<D> physical_normal(const Interface<D>&, const Index<D>&); \
+    template bool middle_of_cut(const Plane<D>&, Vec<D>&);                 \
     template real curvature_by_fit(const Interface<D>&, const Index<D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -189,11 +189,11 @@ void start_fractions(const geometry::Shape<D>& liquid, const MacVelocity<D>& gri
     });
 }
 
-#define WEIR_INSTANTIATE(D)                                                                                 \
-    template class FractionGhosts<D>;                                                                       \
-    template class Around<D>;                                                                               \
-    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);                               \
-    template void hand_on_dust(const Padded<D>&, const Around<D>&, Grid<real, D>&);                         \
+#define WEIR_INSTANTIATE(D)                                                         \
+    template class FractionGhosts<D>;                                               \
+    template class Around<D>;                                                       \
+    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);       \
+    template void hand_on_dust(const Padded<D>&, const Around<D>&, Grid<real, D>&); \
     template void start_fractions(const geometry::Shape<D>&, const MacVelocity<D>&, Grid<real, D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

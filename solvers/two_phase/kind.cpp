@@ -16,17 +16,13 @@ const mac::EffectKinds& body_forces() {
 
 std::vector<scene::Variant> effect_schemas() {
     std::vector<scene::Variant> list = schemas_of(body_forces());
-    list.push_back({"surface_tension",
-                    "Tension of the interface, in balance with the pressure; contact angles are 90 degrees.",
-                    {{.name = "sigma",
-                      .type = Type::number,
-                      .doc = "Surface tension.",
-                      .unit = "N/m",
-                      .required = true,
-                      .min = 0,
-                      .min_open = true}},
-                    {"sigma"}});
-    list.push_back({"viscosity", "Viscous stress of both fluids, with fluid.viscosity and gas.viscosity; implicit.", {}, {"fluid.viscosity"}});
+    list.push_back(
+        {"surface_tension",
+         "Tension of the interface, in balance with the pressure; contact angles are 90 degrees.",
+         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .min_open = true}},
+         {"sigma"}});
+    list.push_back(
+        {"viscosity", "Viscous stress of both fluids, with fluid.viscosity and gas.viscosity; implicit.", {}, {"fluid.viscosity"}});
     return list;
 }
 
@@ -81,9 +77,10 @@ scene::SolverKind kind() {
                    scheme_key({PoissonChoice::key()}),
                    start_keys()};
     schema.effects = effect_schemas();
-    schema.without = {"solids",          "emitters",          "sides.*.temperature", "sides.*.smoke",
-                      "sides.*.profile", "initial.temperature", "initial.smoke"};
-    schema.why_without = "this solver has walls, p = 0 on open sides and periodic axes only; \"mac_water\" has solids, bodies, emitters and heat";
+    schema.without = {"solids",       "emitters", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "initial.temperature",
+                      "initial.smoke"};
+    schema.why_without =
+        "this solver has walls, p = 0 on open sides and periodic axes only; \"mac_water\" has solids, bodies, emitters and heat";
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},

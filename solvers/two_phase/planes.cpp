@@ -40,8 +40,7 @@ real difference_of_cubes(real x, real m1) {
 real lower_half(const Sorted& m, real alpha) {
     const real m12 = m[0] + m[1];
     if (alpha >= m12 && alpha <= m[2]) return (alpha - 0.5 * m12) / m[2];
-    const real cubes =
-        difference_of_cubes(alpha, m[0]) - difference_of_cubes(alpha - m[1], m[0]) - difference_of_cubes(alpha - m[2], m[0]);
+    const real cubes = difference_of_cubes(alpha, m[0]) - difference_of_cubes(alpha - m[1], m[0]) - difference_of_cubes(alpha - m[2], m[0]);
     return cubes / (6 * m[1] * m[2]);
 }
 
@@ -185,12 +184,12 @@ real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end
     return fraction_of_box(plane_at<D>(f, stride), lo, hi);
 }
 
-#define WEIR_INSTANTIATE(D)                                                             \
-    template real volume_below(Vec<D>, real);                                           \
-    template real plane_constant(Vec<D>, real);                                         \
-    template Vec<D> normal_at<D>(const real*, const Strides<D>&);                       \
-    template Plane<D> plane_at<D>(const real*, const Strides<D>&);                      \
-    template real fraction_of_box(const Plane<D>&, const Vec<D>&, const Vec<D>&);       \
+#define WEIR_INSTANTIATE(D)                                                       \
+    template real volume_below(Vec<D>, real);                                     \
+    template real plane_constant(Vec<D>, real);                                   \
+    template Vec<D> normal_at<D>(const real*, const Strides<D>&);                 \
+    template Plane<D> plane_at<D>(const real*, const Strides<D>&);                \
+    template real fraction_of_box(const Plane<D>&, const Vec<D>&, const Vec<D>&); \
     template real fraction_of_slab<D>(const real*, const Strides<D>&, int, int, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

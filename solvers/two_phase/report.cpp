@@ -30,23 +30,45 @@ real TwoPhase<D>::sum_of_faces(int a, real (*power)(real)) const {
            });
 }
 
-/// ∫ρ (x − origin) dV: the liquid of a mixed cell lies below its plane.
+/// ∫ f (x − origin) dV: the liquid of a mixed cell lies below its plane.
 template <int D>
-Vec<D> TwoPhase<D>::first_moment() const {
+Vec<D> TwoPhase<D>::moment_of_liquid() const {
     const Strides<D> stride = strides_of(fraction_ghosts_);
     Vec<D> moment;
     for (int d = 0; d < D; ++d)
         moment[d] = state_.u.cell_volume() * sum_over(state_.extent(), [&](const Index<D>& I) {
-                        const real f = fraction()(I), middle = state_.u.cell_centre(I)[d] - state_.u.origin[d];
-                        real sum = options_.rho.of(f) * middle;
+                        const real f = fraction()(I), sum = f * (state_.u.cell_centre(I)[d] - state_.u.origin[d]);
                         if (!is_mixed(f)) return sum;
                         const Plane<D> plane = plane_at<D>(fraction_ghosts_.at(I), stride);
                         real value = -plane.alpha;
                         for (int k = 0; k < D; ++k) value += 0.5 * plane.m[k];
-                        const real within = free_surface::moment_below_plane(value, plane.m)[d];
-                        return sum + (options_.rho.liquid - options_.rho.gas) * state_.u.h[d] * within;
+                        return sum + state_.u.h[d] * free_surface::moment_below_plane(value, plane.m)[d];
                     });
     return moment;
+}
+
+/// Volumes, centres of volume, and potential energy: −g·∫ρ (x − origin) dV.
+template <int D>
+void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
+    const std::string unit = D == 2 ? "m^2" : "m^3";
+    const real cell = state_.u.cell_volume(), box = cell * static_cast<real>(product(state_.u.cells));
+    const real liquid = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return fraction()(I); });
+    const real gas = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return 1 - fraction()(I); });
+    const Vec<D> of_liquid = moment_of_liquid();
+    Vec<D> of_gas;
+    for (int d = 0; d < D; ++d) of_gas[d] = 0.5 * box * state_.u.h[d] * state_.u.cells[d] - of_liquid[d];
+    list.push_back({"volume", unit, liquid});
+    list.push_back({"gas_volume", unit, gas});
+    list.push_back({"potential_energy", D == 2 ? "J/m" : "J", -dot(gravity_, options_.rho.liquid * of_liquid + options_.rho.gas * of_gas)});
+    for (int d = 0; d < D; ++d) {
+        const std::string axis(1, "xyz"[d]);
+        const real speed = cell * sum_over(state_.extent(), [&](const Index<D>& I) {
+                               return (1 - fraction()(I)) * 0.5 * (state_.u[d](I) + state_.u[d](I + e<D>(d)));
+                           });
+        list.push_back({"centre_" + axis, "m", liquid > 0 ? state_.u.origin[d] + of_liquid[d] / liquid : not_applicable});
+        list.push_back({"gas_centre_" + axis, "m", gas > 0 ? state_.u.origin[d] + of_gas[d] / gas : not_applicable});
+        list.push_back({"gas_velocity_" + axis, "m/s", gas > 0 ? speed / gas : not_applicable});
+    }
 }
 
 /// The largest coordinate along an axis at which f falls below ½, on straight lines between the middles of cells.
@@ -66,9 +88,7 @@ real TwoPhase<D>::furthest(int axis) const {
 
 template <int D>
 std::vector<Integral> TwoPhase<D>::integrals() const {
-    const std::string volume_unit = D == 2 ? "m^2" : "m^3", per_depth = D == 2 ? "/m" : "";
-    const real cell = state_.u.cell_volume();
-    const auto sum = [&](auto&& f) { return cell * sum_over(state_.extent(), f); };
+    const std::string per_depth = D == 2 ? "/m" : "";
     real kinetic = 0, fastest = 0;
     Vec<D> momentum;
     for (int a = 0; a < D; ++a) {
@@ -76,15 +96,12 @@ std::vector<Integral> TwoPhase<D>::integrals() const {
         momentum[a] = sum_of_faces(a, [](real u) { return u; });
         fastest = std::max(fastest, max_magnitude(state_.u[a]));
     }
-    std::vector<Integral> list = {
-        {"volume", volume_unit, sum([&](const Index<D>& I) { return fraction()(I); })},
-        {"gas_volume", volume_unit, sum([&](const Index<D>& I) { return 1 - fraction()(I); })},
-        {"kinetic_energy", "J" + per_depth, kinetic},
-        {"potential_energy", "J" + per_depth, -dot(gravity_, first_moment())},
-        {"max_speed", "m/s", fastest},
-        {"front_x", "m", furthest(0)},
-        {"top", "m", furthest(up_)},
-    };
+    std::vector<Integral> list;
+    add_volumes(list);
+    list.push_back({"kinetic_energy", "J" + per_depth, kinetic});
+    list.push_back({"max_speed", "m/s", fastest});
+    list.push_back({"front_x", "m", furthest(0)});
+    list.push_back({"top", "m", furthest(up_)});
     for (int a = 0; a < D; ++a) list.push_back({std::string("momentum_") + "xyz"[a], "kg m/s" + per_depth, momentum[a]});
     const char* const rules[bounds] = {"steps_bound_by_speed", "steps_bound_by_tension", "steps_bound_by_gravity"};
     for (std::size_t i = 0; i < bounds; ++i) list.push_back({rules[i], "", static_cast<real>(ruled_[i])});
@@ -117,14 +134,15 @@ std::size_t TwoPhase<D>::bytes() const {
     return total;
 }
 
-#define WEIR_INSTANTIATE(D)                                                \
-    template FieldSet TwoPhase<D>::fields() const;                         \
-    template real TwoPhase<D>::sum_of_faces(int, real (*)(real)) const;    \
-    template Vec<D> TwoPhase<D>::first_moment() const;                     \
-    template real TwoPhase<D>::furthest(int) const;                        \
-    template std::vector<Integral> TwoPhase<D>::integrals() const;         \
-    template void TwoPhase<D>::save(Checkpoint&) const;                    \
-    template void TwoPhase<D>::restore(const Checkpoint&);                 \
+#define WEIR_INSTANTIATE(D)                                               \
+    template FieldSet TwoPhase<D>::fields() const;                        \
+    template real TwoPhase<D>::sum_of_faces(int, real (*)(real)) const;   \
+    template Vec<D> TwoPhase<D>::moment_of_liquid() const;                \
+    template void TwoPhase<D>::add_volumes(std::vector<Integral>&) const; \
+    template real TwoPhase<D>::furthest(int) const;                       \
+    template std::vector<Integral> TwoPhase<D>::integrals() const;        \
+    template void TwoPhase<D>::save(Checkpoint&) const;                   \
+    template void TwoPhase<D>::restore(const Checkpoint&);                \
     template std::size_t TwoPhase<D>::bytes() const;
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -14,12 +14,12 @@ namespace weir::two_phase {
 template <int D>
 StepReport TwoPhase<D>::step(real dt) {
     ++ruled_[static_cast<std::size_t>(ruling_bound())];
-    transport(dt);                                    // ∂f/∂t + ∇·(f u) = 0,  ∂(ρu)/∂t + ∇·(ρ u u) = 0
-    find_face_densities();                            // ρ_a of the half cells beside each face
-    apply_viscosity(dt);                              // (ρ_a − dt ∇·2μD) u = ρ_a u
+    transport(dt);                                      // ∂f/∂t + ∇·(f u) = 0,  ∂(ρu)/∂t + ∇·(ρ u u) = 0
+    find_face_densities();                              // ρ_a of the half cells beside each face
+    apply_viscosity(dt);                                // (ρ_a − dt ∇·2μD) u = ρ_a u
     effects_.apply(Stage::force, state_, dt, passes_);  // u += dt g
-    apply_tension(dt);                                // u += dt σ κ ∇f / ρ_a
-    const poisson::Report& poisson = project(dt);     // u −= dt ∇p / ρ_a,  ∇·u = 0
+    apply_tension(dt);                                  // u += dt σ κ ∇f / ρ_a
+    const poisson::Report& poisson = project(dt);       // u −= dt ∇p / ρ_a,  ∇·u = 0
     find_rate();
     check();
     ++steps_;

@@ -92,12 +92,13 @@ private:
     real limit(Bound bound) const;
     Bound ruling_bound() const;
     real sum_of_faces(int a, real (*power)(real)) const;
-    Vec<D> first_moment() const;
+    Vec<D> moment_of_liquid() const;
+    void add_volumes(std::vector<Integral>& list) const;
     real furthest(int axis) const;
 
     Options options_;
     Experiment experiment_;
-    MacState<D> state_;  // its density is that of the lighter phase, its mobility that over the density of the face
+    MacState<D> state_;                    // its density is that of the lighter phase, its mobility that over the density of the face
     std::array<Boundary<D>, D> mirrored_;  // conditions of the advecting velocity: no flow through walls
     FractionGhosts<D> ghosts_of_fraction_;
     Around<D> around_;
@@ -107,10 +108,10 @@ private:
     Transport<D> transport_;
     Padded<D> fraction_ghosts_;
     FaceFractions<D> faces_;
-    Curvature<D> curvature_;                    // empty without tension
-    std::unique_ptr<Viscosity<D>> viscosity_;   // nullptr without the effect
+    Curvature<D> curvature_;                   // empty without tension
+    std::unique_ptr<Viscosity<D>> viscosity_;  // nullptr without the effect
     Projection<D> projection_;
-    mutable Grid<real, D> distance_;            // for drawing and probes; empty until it is shown
+    mutable Grid<real, D> distance_;  // for drawing and probes; empty until it is shown
     mutable bool distance_is_stale_ = true;
     std::int64_t steps_ = 0;
     std::array<std::int64_t, bounds> ruled_{};  // steps that each bound ruled

@@ -82,9 +82,10 @@ void TwoPhase<D>::refuse_sides(const scene::Scene& scene) const {
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1})
             if (state_.sides.side(a, end).kind == geometry::SideKind::inflow)
-                scene.refuse(std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max") + ".kind",
-                             "solver \"two_phase\" does not support sides of kind \"inflow\": the fraction of the fluid that enters is not known",
-                             "wall, moving_wall, outflow (p = 0) or periodic");
+                scene.refuse(
+                    std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max") + ".kind",
+                    "solver \"two_phase\" does not support sides of kind \"inflow\": the fraction of the fluid that enters is not known",
+                    "wall, moving_wall, outflow (p = 0) or periodic");
 }
 
 template <int D>

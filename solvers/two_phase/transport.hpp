@@ -37,8 +37,8 @@ public:
     explicit Transport(const MacState<D>& state);
     /// Advects the fractions of cells.
     void advect_fraction(const Motion<D>& motion, Grid<real, D>& f);
-    /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start; `carried`:
-    /// the conditions of the component at the sides; `to`: the new component.
+    /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start;
+    /// `carried`: the conditions of the component at the sides; `to`: the new component.
     void advect_momentum(int a, const Motion<D>& motion, const Grid<real, D>& fractions, const Boundary<D>& carried, const Densities& rho,
                          Grid<real, D>& to);
     std::size_t bytes() const;

@@ -19,27 +19,35 @@ Viscosity<D>::Viscosity(const MacState<D>& state, real mu_liquid, real mu_gas)
       direction_(state.u),
       residual_(state.u.cells, state.u.h, state.u.origin),
       product_(residual_),
-      diagonal_(residual_) {
+      mass_(residual_),
+      inverse_(residual_) {
     for (int a = 0; a < D; ++a) homogeneous_[static_cast<std::size_t>(a)] = boundary_[static_cast<std::size_t>(a)].homogeneous();
     for (int b = 1; b < D; ++b)
         for (int a = 0; a < b; ++a) edge(a, b) = Grid<real, D>(Extent<D>(state.u.cells + e<D>(a) + e<D>(b)));
 }
 
+/// f(a, first, count) on the rows of unknowns of every component.
 template <int D>
 template <class F>
-void Viscosity<D>::for_each_unknown(F&& f) const {
-    for (int a = 0; a < D; ++a) for_each_free_face(residual_, state_->sides, a, [&](const Index<D>& I) { f(a, I); });
+void Viscosity<D>::for_each_row(F&& f) const {
+    for (int a = 0; a < D; ++a) {
+        const Nodes<D> faces = free_faces(residual_, state_->sides, a);
+        Extent<D> rows = faces.hi;
+        rows[0] = faces.lo[0] + 1;
+        for_each_in(faces.lo, rows, [&](const Index<D>& first) { f(a, first, faces.hi[0] - faces.lo[0]); });
+    }
 }
 
-/// The sum of f(a, I) over all unknowns.
+/// The sum of f(a, first, count) over the rows of unknowns.
 template <int D>
 template <class F>
-real Viscosity<D>::sum(F&& f) const {
+real Viscosity<D>::sum_of_rows(F&& f) const {
     real total = 0;
     for (int a = 0; a < D; ++a) {
         const Nodes<D> faces = free_faces(residual_, state_->sides, a);
-        const Extent<D> extent(faces.hi - faces.lo);
-        total += sum_over(extent, [&](const Index<D>& I) { return f(a, I + faces.lo); });
+        Extent<D> rows(faces.hi - faces.lo);
+        rows[0] = 1;
+        total += sum_over(rows, [&](const Index<D>& row) { return f(a, row + faces.lo, faces.hi[0] - faces.lo[0]); });
     }
     return total;
 }
@@ -51,7 +59,7 @@ bool Viscosity<D>::bears_shear(int a, int b, const Index<D>& I) const {
         const int n = residual_.cells[axis];
         if (state_->sides.periodic(axis) || (I[axis] > 0 && I[axis] < n)) continue;
         const auto& side = state_->sides.side(axis, I[axis] == 0 ? 0 : 1);
-        if (side.kind == geometry::SideKind::outflow || !(side.no_slip || side.kind == geometry::SideKind::moving_wall)) return false;
+        if (!(side.kind == geometry::SideKind::moving_wall || (side.kind == geometry::SideKind::wall && side.no_slip))) return false;
     }
     return true;
 }
@@ -59,7 +67,8 @@ bool Viscosity<D>::bears_shear(int a, int b, const Index<D>& I) const {
 template <int D>
 void Viscosity<D>::find_viscosities(const Padded<D>& f) {
     const auto mu = [&](const Index<D>& I) { return mu_gas_ + (mu_liquid_ - mu_gas_) * std::clamp(f(I), 0.0, 1.0); };
-    for_each_cell(cell_mu_.extent(), [&](const Index<D>& I) { cell_mu_(I) = mu(I); });
+    const Index<D> one = Index<D>::constant(1);
+    for_each_cell(Extent<D>(cell_mu_.extent() + one + one), [&](const Index<D>& I) { cell_mu_(I - one) = mu(I - one); });
     for (int b = 1; b < D; ++b)
         for (int a = 0; a < b; ++a)
             for_each_cell(edge(a, b).extent(), [&](const Index<D>& I) {
@@ -68,42 +77,46 @@ void Viscosity<D>::find_viscosities(const Padded<D>& f) {
             });
 }
 
-/// 2μD_ab at the lower side along b of the volume of face I of component a; for a = b at the middle of cell I − e_a.
+/// The diagonal of the matrix. Beside sides it is that of the interior: close enough to precondition.
 template <int D>
-real Viscosity<D>::stress(const PaddedVelocity<D>& u, int a, int b, const Index<D>& I) const {
+void Viscosity<D>::find_coefficients() {
     const Vec<D>& h = residual_.h;
-    const Index<D> below = I - e<D>(b);
-    if (a != b) return edge(a, b)(I) * ((u[a](I) - u[a](below)) / h[b] + (u[b](I) - u[b](I - e<D>(a))) / h[a]);
-    const int n = residual_.cells[a];
-    Index<D> cell = below;
-    if (cell[a] < 0) cell[a] = state_->sides.periodic(a) ? n - 1 : 0;
-    if (cell[a] >= n) cell[a] = state_->sides.periodic(a) ? 0 : n - 1;
-    return 2 * cell_mu_(cell) * (u[a](I) - u[a](below)) / h[a];
+    for_each_row([&](int a, const Index<D>& first, int count) {
+        Index<D> I = first;
+        for (int i = 0; i < count; ++i, ++I[0]) {
+            real sum = 2 * (cell_mu_(I) + cell_mu_(I - e<D>(a))) / (h[a] * h[a]);
+            for (int b = 0; b < D; ++b)
+                if (b != a) sum += (edge(a, b)(I) + edge(a, b)(I + e<D>(b))) / (h[b] * h[b]);
+            inverse_[a](I) = 1 / (mass_[a](I) + dt_ * sum);
+        }
+    });
 }
 
-/// ((ρ − dt ∇·2μD) u)_a at face I
+/// ((ρ − dt ∇·2μD) p)_a on a row of faces, p the direction. 2μD_ab is at the sides of a face's volume: in cells for b = a, else at edges.
 template <int D>
-real Viscosity<D>::image(const PaddedVelocity<D>& u, int a, const Index<D>& I) const {
-    real divergence = 0;
-    for (int b = 0; b < D; ++b) divergence += (stress(u, a, b, I + e<D>(b)) - stress(u, a, b, I)) / residual_.h[b];
-    return rho_.of((*faces_)[static_cast<std::size_t>(a)](I)) * u[a](I) - dt_ * divergence;
-}
-
-template <int D>
-real Viscosity<D>::diagonal(int a, const Index<D>& I) const {
+void Viscosity<D>::multiply_row(int a, const Index<D>& first, int count, real* result) const {
     const Vec<D>& h = residual_.h;
-    const int n = residual_.cells[a];
-    const int upper = state_->sides.periodic(a) ? I[a] % n : std::min(I[a], n - 1);
-    const int lower = I[a] > 0 ? I[a] - 1 : state_->sides.periodic(a) ? n - 1 : 0;
-    Index<D> up = I, down = I;
-    up[a] = upper, down[a] = lower;
-    real sum = 2 * (cell_mu_(up) + cell_mu_(down)) / (h[a] * h[a]);
-    for (int b = 0; b < D; ++b)
-        if (b != a) sum += (edge(a, b)(I) + edge(a, b)(I + e<D>(b))) / (h[b] * h[b]);
-    return rho_.of((*faces_)[static_cast<std::size_t>(a)](I)) + dt_ * sum;
+    const real *u = direction_[a].at(first), *rho = &mass_[a](first), *mu = cell_mu_.at(first);
+    const std::ptrdiff_t s = direction_[a].stride(a), m = cell_mu_.stride(a);
+    const real along = 2 * dt_ / (h[a] * h[a]);
+#pragma omp simd
+    for (int i = 0; i < count; ++i) result[i] = rho[i] * u[i] - along * (mu[i] * (u[i + s] - u[i]) - mu[i - m] * (u[i] - u[i - s]));
+    for (int b = 0; b < D; ++b) {
+        if (b == a) continue;
+        const real *v = direction_[b].at(first), *shear = &edge(a, b)(first);
+        const std::ptrdiff_t up = direction_[a].stride(b), v_up = direction_[b].stride(b), v_by = direction_[b].stride(a),
+                             e_up = edge(a, b).stride(b);
+        const real across = dt_ / (h[b] * h[b]), mixed = dt_ / (h[a] * h[b]);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const real upper = across * (u[i + up] - u[i]) + mixed * (v[i + v_up] - v[i + v_up - v_by]);
+            const real lower = across * (u[i] - u[i - up]) + mixed * (v[i] - v[i - v_by]);
+            result[i] -= shear[i + e_up] * upper - shear[i] * lower;
+        }
+    }
 }
 
-/// Walls hold the faces on them, which are no unknowns, at zero change.
+/// Faces on walls are no unknowns: the direction is 0 there.
 template <int D>
 void Viscosity<D>::clear_walls() {
     for (int a = 0; a < D; ++a) {
@@ -122,23 +135,32 @@ void Viscosity<D>::clear_walls() {
 /// r = ρ u* − A u*. Returns the norm of r relative to that of ρ u*.
 template <int D>
 real Viscosity<D>::start() {
-    const auto guess = [&](int a, const Index<D>& I) { return rho_.of((*faces_)[static_cast<std::size_t>(a)](I)) * state_->u[a](I); };
     for (int a = 0; a < D; ++a) fill(direction_[a], state_->u[a], boundary_[static_cast<std::size_t>(a)]);
-    for_each_unknown([&](int a, const Index<D>& I) {
-        diagonal_[a](I) = diagonal(a, I);
-        residual_[a](I) = guess(a, I) - image(direction_, a, I);
+    for_each_row([&](int a, const Index<D>& first, int count) {
+        real* r = &residual_[a](first);
+        multiply_row(a, first, count, r);
+        const real *rho = &mass_[a](first), *u = &state_->u[a](first);
+        for (int i = 0; i < count; ++i) r[i] = rho[i] * u[i] - r[i];
     });
     clear_walls();
-    norm_of_b_ = std::sqrt(sum([&](int a, const Index<D>& I) { return guess(a, I) * guess(a, I) / diagonal_[a](I); }));
-    const real rz = sum([&](int a, const Index<D>& I) { return residual_[a](I) * residual_[a](I) / diagonal_[a](I); });
+    norm_of_b_ = std::sqrt(sum_of_rows([&](int a, const Index<D>& first, int count) {
+        const real *rho = &mass_[a](first), *u = &state_->u[a](first), *inverse = &inverse_[a](first);
+        real sum = 0;
+        for (int i = 0; i < count; ++i) sum += rho[i] * u[i] * rho[i] * u[i] * inverse[i];
+        return sum;
+    }));
+    const real rz = precondition();
     if (norm_of_b_ == 0) norm_of_b_ = std::sqrt(rz);  // fluid at rest beside a moving wall
     return rz == 0 ? 0 : std::sqrt(rz) / norm_of_b_;
 }
 
 template <int D>
 void Viscosity<D>::apply(MacState<D>& state, const Padded<D>& f, const FaceFractions<D>& faces, const Densities& rho, real dt) {
-    state_ = &state, faces_ = &faces, rho_ = rho, dt_ = dt;
+    state_ = &state, dt_ = dt;
     find_viscosities(f);
+    for (int a = 0; a < D; ++a)
+        for_each_cell(mass_[a].extent(), [&](const Index<D>& I) { mass_[a](I) = rho.of(faces[static_cast<std::size_t>(a)](I)); });
+    find_coefficients();
     iterations_ = 0;
     const real first = start();
     linear::StopTest stop(tolerance, most_iterations, iterations_);
@@ -149,36 +171,61 @@ void Viscosity<D>::apply(MacState<D>& state, const Padded<D>& f, const FaceFract
 
 template <int D>
 real Viscosity<D>::precondition() {
-    return sum([&](int a, const Index<D>& I) { return residual_[a](I) * residual_[a](I) / diagonal_[a](I); });
+    return sum_of_rows([&](int a, const Index<D>& first, int count) {
+        const real *r = &residual_[a](first), *inverse = &inverse_[a](first);
+        real sum = 0;
+#pragma omp simd reduction(+ : sum)
+        for (int i = 0; i < count; ++i) sum += r[i] * r[i] * inverse[i];
+        return sum;
+    });
 }
 
 template <int D>
 void Viscosity<D>::update_direction(real beta) {
-    for_each_unknown([&](int a, const Index<D>& I) {
-        real& p = direction_[a](I);
-        p = residual_[a](I) / diagonal_[a](I) + (beta == 0 ? 0 : beta * p);
+    for_each_row([&](int a, const Index<D>& first, int count) {
+        const real *r = &residual_[a](first), *inverse = &inverse_[a](first);
+        real* p = direction_[a].at(first);
+        if (beta == 0)
+            for (int i = 0; i < count; ++i) p[i] = r[i] * inverse[i];
+        else
+#pragma omp simd
+            for (int i = 0; i < count; ++i) p[i] = r[i] * inverse[i] + beta * p[i];
     });
     for (int a = 0; a < D; ++a) fill_ghosts(direction_[a], homogeneous_[static_cast<std::size_t>(a)]);
 }
 
 template <int D>
 real Viscosity<D>::multiply() {
-    for_each_unknown([&](int a, const Index<D>& I) { product_[a](I) = image(direction_, a, I); });
-    return sum([&](int a, const Index<D>& I) { return direction_[a](I) * product_[a](I); });
+    return sum_of_rows([&](int a, const Index<D>& first, int count) {
+        real* q = &product_[a](first);
+        multiply_row(a, first, count, q);
+        const real* p = direction_[a].at(first);
+        real sum = 0;
+#pragma omp simd reduction(+ : sum)
+        for (int i = 0; i < count; ++i) sum += p[i] * q[i];
+        return sum;
+    });
 }
 
 template <int D>
 real Viscosity<D>::advance(real alpha) {
-    for_each_unknown([&](int a, const Index<D>& I) {
-        state_->u[a](I) += alpha * direction_[a](I);
-        residual_[a](I) -= alpha * product_[a](I);
-    });
-    return std::sqrt(precondition()) / norm_of_b_;
+    return std::sqrt(sum_of_rows([&](int a, const Index<D>& first, int count) {
+               const real *p = direction_[a].at(first), *q = &product_[a](first), *inverse = &inverse_[a](first);
+               real *r = &residual_[a](first), *u = &state_->u[a](first), sum = 0;
+#pragma omp simd reduction(+ : sum)
+               for (int i = 0; i < count; ++i) {
+                   u[i] += alpha * p[i];
+                   r[i] -= alpha * q[i];
+                   sum += r[i] * r[i] * inverse[i];
+               }
+               return sum;
+           })) /
+           norm_of_b_;
 }
 
 template <int D>
 std::size_t Viscosity<D>::bytes() const {
-    std::size_t total = cell_mu_.bytes() + residual_.bytes() + product_.bytes() + diagonal_.bytes();
+    std::size_t total = cell_mu_.bytes() + residual_.bytes() + product_.bytes() + mass_.bytes() + inverse_.bytes();
     for (const auto& mu : edge_mu_) total += mu.bytes();
     for (const auto& component : direction_.face) total += component.bytes();
     return total;

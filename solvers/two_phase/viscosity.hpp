@@ -26,28 +26,25 @@ public:
 
 private:
     void find_viscosities(const Padded<D>& f);
+    void find_coefficients();
     bool bears_shear(int a, int b, const Index<D>& I) const;
-    real stress(const PaddedVelocity<D>& u, int a, int b, const Index<D>& I) const;
-    real image(const PaddedVelocity<D>& u, int a, const Index<D>& I) const;
-    real diagonal(int a, const Index<D>& I) const;
+    void multiply_row(int a, const Index<D>& first, int count, real* result) const;
     real start();
     void clear_walls();
     Grid<real, D>& edge(int a, int b) { return edge_mu_[static_cast<std::size_t>(D == 2 ? 0 : 3 - a - b)]; }
     const Grid<real, D>& edge(int a, int b) const { return edge_mu_[static_cast<std::size_t>(D == 2 ? 0 : 3 - a - b)]; }
     template <class F>
-    void for_each_unknown(F&& f) const;
+    void for_each_row(F&& f) const;
     template <class F>
-    real sum(F&& f) const;
+    real sum_of_rows(F&& f) const;
 
     real mu_liquid_, mu_gas_;
-    Grid<real, D> cell_mu_;                                // [Pa s]
-    std::array<Grid<real, D>, D == 2 ? 1 : 3> edge_mu_;    // of the edges along axis k; in 2D the nodes
+    Padded<D> cell_mu_;                                  // [Pa s]
+    std::array<Grid<real, D>, D == 2 ? 1 : 3> edge_mu_;  // of the edges along axis k; in 2D the nodes
     std::array<Boundary<D>, D> boundary_, homogeneous_;
-    PaddedVelocity<D> direction_;                          // p; at the start u*
-    MacVelocity<D> residual_, product_, diagonal_;
-    MacState<D>* state_ = nullptr;                         // of the present call, with those below
-    const FaceFractions<D>* faces_ = nullptr;
-    Densities rho_;
+    PaddedVelocity<D> direction_;                         // p; at the start u*
+    MacVelocity<D> residual_, product_, mass_, inverse_;  // mass: ρ_a; inverse: of the diagonal
+    MacState<D>* state_ = nullptr;                        // of the present call, with those below
     real dt_ = 0, norm_of_b_ = 0;
     int iterations_ = 0;
 };

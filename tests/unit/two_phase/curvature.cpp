@@ -24,7 +24,7 @@ Errors<D> errors(int n, F&& kappa) {
     Padded<D> padded(state.extent());
     FractionGhosts<D>(state.sides, -1).fill_all(padded, solver.fraction());
     const Around<D> around(state.sides, state.u.cells);
-    const Interface<D> interface{solver.fraction(), padded, around, state.u.h};
+    const Interface<D> interface { solver.fraction(), padded, around, state.u.h };
     const real exact = (D - 1) / 0.2;
     Errors<D> e;
     for_each_cell(replicated(state.extent()), [&](const Index<D>& I) {

@@ -43,9 +43,9 @@ TEST_IN_2D_AND_3D("one thread and three give the same bits") {
     const auto scene = two_phase_scene(collapse<D>());
     TwoPhase<D> one(scene), three(scene);
     set_threads(1);
-    run(one, 10);
+    run(one, 5);
     set_threads(3);
-    run(three, 10);
+    run(three, 5);
     set_threads(1);
     EXPECT_TRUE(same_bits(one, three));
 }
@@ -80,7 +80,8 @@ TEST_IN_2D_AND_3D("a mirrored collapse is the mirror image") {
 // A drop that flies along x and one along y, with sweeps in the other order.
 TEST("a turned flight is the turned image") {
     const auto flight = [](const char* velocity, int order) {
-        const std::string more = std::string("initial.liquid_velocity = ") + velocity + "\neffects = { surface_tension = { sigma = 10.0 } }";
+        const std::string more =
+            std::string("initial.liquid_velocity = ") + velocity + "\neffects = { surface_tension = { sigma = 10.0 } }";
         return std::make_unique<TwoPhase<2>>(two_phase_scene(drop<2>(24, more)), Partition{}, Experiment{.first_order_of_sweeps = order});
     };
     const auto along_x = flight("[1.0, 0.0]", 0), along_y = flight("[0.0, 1.0]", 1);

