@@ -1,5 +1,5 @@
-// A standing wave: the amplitude of its one mode, from the liquid fractions of columns, the level set or the surface of columns, against the
-// linear (viscous) solution.
+// A standing wave: the amplitude of its one mode, from the liquid fractions of columns, the level set or the surface of columns, against
+// the linear (viscous) solution.
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/samples.hpp"
 #include "validation/metrics/signal.hpp"
@@ -37,7 +37,9 @@ real mode_amplitude(const FieldSet& fields, const scene::Scene& scene, real) {
     real sum = 0;
     for (int i = 0; i < g.cells[0]; ++i) {
         const real x = g.origin[0] + g.spacing[0] * (i + 0.5);
-        const real height = fraction ? column_height(fields, *fraction, i) : phi ? surface_height(fields, *phi, i) : columns->data[0][static_cast<std::size_t>(i)];
+        const real height = fraction ? column_height(fields, *fraction, i)
+                            : phi    ? surface_height(fields, *phi, i)
+                                     : columns->data[0][static_cast<std::size_t>(i)];
         sum += (height - wave.number("level")) * std::cos(k * x);
     }
     return 2 * sum / g.cells[0];
@@ -56,6 +58,18 @@ real history_error(const Curve& ours, const Reference& ref) {
     real sum = 0;
     for (std::size_t i = 0; i < exact.size(); ++i) sum += (ours.y[i] - exact.y[i]) * (ours.y[i] - exact.y[i]);
     return std::sqrt(sum / static_cast<real>(exact.size())) / ref.number("amplitude");
+}
+
+/// Largest difference of the amplitude to the reference after whole periods, each over its start.
+real period_error(const Curve& ours, const Reference& ref) {
+    const Curve& exact = ref.curve("amplitude");
+    const real period = 2 * pi / ref.number("frequency");
+    real largest = 0;
+    for (int m = 1; m * period <= ours.x.back() * (1 + 1e-9); ++m) {
+        const real t = std::min(m * period, ours.x.back());
+        largest = std::max(largest, std::abs(cubic(ours, t) / ours.y.front() - cubic(exact, t) / exact.y.front()));
+    }
+    return largest;
 }
 
 /// Rate of exponential growth over the last third of the run, by least squares of the amplitude's logarithm.
@@ -97,6 +111,12 @@ std::vector<Metric> wave_metrics() {
                  const Curve ours = run.series("wave.decay_error");
                  return std::abs(decay(ours) / decay(exact_at(ref.curve("amplitude"), ours.x)) - 1);
              },
+         .observe = mode_amplitude},
+        {.name = "wave.period_error",
+         .unit = "",
+         .doc = "Largest difference of the amplitude to the reference after whole periods, over the first amplitude.",
+         .measure = [](const RunRecord& run, const Reference& ref) { return period_error(run.series("wave.period_error"), ref); },
+         .figure = [](const RunRecord& run, const Reference& ref) { return wave_panel(run, ref, "wave.period_error"); },
          .observe = mode_amplitude},
         {.name = "wave.growth_error",
          .unit = "",

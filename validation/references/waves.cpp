@@ -11,8 +11,8 @@
 namespace weir::validation {
 namespace {
 
-/// Roots of z^4 - 4 b n^(1/2) z^3 + 2 (1 - 6 b) n z^2 + 4 (1 - 3 b) n^(3/2) z + (1 - 4 b) n^2 + w0^2. For a wave two conjugate pairs, one of
-/// them in the left half plane.
+/// Roots of z^4 - 4 b n^(1/2) z^3 + 2 (1 - 6 b) n z^2 + 4 (1 - 3 b) n^(3/2) z + (1 - 4 b) n^2 + w0^2. For a wave two conjugate pairs, one
+/// of them in the left half plane.
 std::array<Complex, 4> roots(real n, real w2, real beta) {
     const std::array<double, 5> coefficients = {(1 - 4 * beta) * n * n + w2, 4 * (1 - 3 * beta) * n * std::sqrt(n), 2 * (1 - 6 * beta) * n,
                                                 -4 * beta * std::sqrt(n), 1};
@@ -56,7 +56,7 @@ real growth_rate(real nu, real k, real omega2, real beta) {
     const real n = nu * k * k;
     real rate = 0;
     for (const Complex z : roots(n, omega2, beta))
-        if (z.real() > 0 && std::abs(z.imag()) < 1e-9 * z.real()) rate = std::max(rate, (z * z).real() - n);
+        if (z.real() < 0 && std::abs(z.imag()) < 1e-9 * std::abs(z)) rate = std::max(rate, (z * z).real() - n);
     return rate;
 }
 

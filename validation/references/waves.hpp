@@ -16,7 +16,8 @@ real wave_frequency(real g, real k, real depth, real sigma_over_rho = 0);
 /// and (1 - 4 beta) n^2 instead of n^2 in the first term of a.
 real prosperetti(real t, real nu, real k, real omega0, real a0, real beta = 0);
 
-/// Growth rate z^2 - n [1/s] of the largest real root z for w0^2 = omega2 < 0: the Rayleigh-Taylor instability. 0: stable.
+/// Growth rate z^2 - n [1/s] of the real root z < 0 for w0^2 = omega2 < 0, where exp(z^2 t) erfc(z sqrt t) grows: the Rayleigh-Taylor
+/// instability. 0: stable.
 real growth_rate(real nu, real k, real omega2, real beta);
 
 }  // namespace weir::validation
