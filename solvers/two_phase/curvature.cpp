@@ -84,7 +84,7 @@ real curvature_by_heights(const Interface<D>& s, const Index<D>& I) {
     const Vec<D> m = physical_normal(s, I);
     std::array<int, D> axes;
     std::iota(axes.begin(), axes.end(), 0);
-    std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return std::abs(m[a]) > std::abs(m[b]); });
+    std::sort(axes.begin(), axes.end(), [&](int a, int b) { return std::abs(m[a]) > std::abs(m[b]); });
     real kappa = no_curvature;
     for (const int axis : axes)
         if (curvature_along(s, I, axis, m[axis] > 0 ? 1 : -1, kappa)) return kappa;

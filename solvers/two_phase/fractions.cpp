@@ -104,7 +104,7 @@ template <int D>
 struct Dust {
     const Padded<D>& before;
     const Around<D>& around;
-    std::vector<Index<D>> offsets = neighbours<D>();
+    const std::vector<Index<D>>& offsets;
 
     /// The neighbour of I, within the domain, that is closest to one half; the first of several. False: none takes dust.
     bool receiver(const Index<D>& I, Index<D>& J) const {
@@ -138,7 +138,8 @@ struct Dust {
 
 template <int D>
 void hand_on_dust(const Padded<D>& before, const Around<D>& around, Grid<real, D>& f) {
-    const Dust<D> all{before, around};
+    static const std::vector<Index<D>> offsets = neighbours<D>();
+    const Dust<D> all{before, around, offsets};
     for_each_cell(f.extent(), [&](const Index<D>& I) { f(I) += all.change(I); });
 }
 

@@ -63,28 +63,27 @@ void TwoPhase<D>::find_face_densities() {
     ghosts_of_fraction_.fill_all(fraction_ghosts_, fraction());
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
-        if (experiment_.mean_density)
-            for_each_cell(faces_[at].extent(), [&](const Index<D>& I) {
-                faces_[at](I) = std::clamp(0.5 * (fraction_ghosts_(I - e<D>(a)) + fraction_ghosts_(I)), 0.0, 1.0);
-            });
-        else
-            find_face_fractions(fraction_ghosts_, a, faces_[at]);
-        for_each_cell(faces_[at].extent(),
-                      [&](const Index<D>& I) { state_.mobility[at](I) = state_.rho / options_.rho.of(faces_[at](I)); });
+        find_face_fractions(fraction_ghosts_, a, faces_[at]);
+        const auto mean = [&](const Index<D>& I) {
+            return std::clamp(0.5 * (fraction_ghosts_(I - e<D>(a)) + fraction_ghosts_(I)), 0.0, 1.0);
+        };
+        for_each_cell(faces_[at].extent(), [&](const Index<D>& I) {
+            state_.mobility[at](I) = state_.rho / options_.rho.of(experiment_.mean_density ? mean(I) : faces_[at](I));
+        });
     }
 }
 
 template <int D>
 void TwoPhase<D>::apply_viscosity(real dt) {
     if (!viscosity_) return;
-    const auto timed = passes_.time(effect_pass("viscosity"));
+    const auto timed = passes_.time("effect viscosity");
     viscosity_->apply(state_, fraction_ghosts_, faces_, options_.rho, dt);
 }
 
 template <int D>
 void TwoPhase<D>::apply_tension(real dt) {
     if (options_.sigma == 0) return;
-    const auto timed = passes_.time(effect_pass("surface_tension"));
+    const auto timed = passes_.time("effect surface_tension");
     if (experiment_.fixed_curvature != 0)
         for_each_cell(curvature_.kappa.extent(), [&](const Index<D>& I) {
             curvature_.kappa(I) = is_interfacial(fraction_ghosts_, I) ? experiment_.fixed_curvature : no_curvature;

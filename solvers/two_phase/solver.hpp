@@ -38,7 +38,7 @@ struct Options {
 /// Parts of the method that tests switch to show what they are for. Not keys of a scene.
 struct Experiment {
     bool velocity_form = false;  // velocity is advected by itself, without the masses that carry it
-    bool mean_density = false;   // a face has the mean fraction of its cells, instead of that of the halves beside it
+    bool mean_density = false;   // the pressure has the mean fraction of a face's cells, the momentum that of the halves beside it
     WithoutHeights curvature = WithoutHeights::fit;
     real fixed_curvature = 0;  // of all interfacial cells [1/m]; 0: computed
     int first_order_of_sweeps = 0;

@@ -1,6 +1,8 @@
 // Properties of the whole step: volumes, symmetries, threads, restarts.
 #include "support.hpp"
 
+#include "core/error.hpp"
+
 namespace property_tests {
 
 using namespace weir;
@@ -101,39 +103,67 @@ TEST_IN_2D_AND_3D("a flight shifted by whole cells in a periodic box is the shif
     EXPECT_LT(difference(here, there, [&](Index<D> I) { return I[0] = (I[0] + n / 4) % n, I; }), 1e-7);
 }
 
-// Without viscosity and tension energy changes by the limited slopes only, which dissipate; what is left is the tolerance of the pressure.
-TEST("a drop that is flung through gas keeps its shape and gains no energy; in the velocity form it is squeezed") {
-    const auto aspect = [](bool velocity_form, real& rise) {
-        const auto scene = two_phase_scene(drop<2>(24, "initial.liquid_velocity = [1.0, 0.0]"), {{"liquid[0].radius", "0.15"}});
-        TwoPhase<2> solver(scene, {}, Experiment{.velocity_form = velocity_form});
-        real energy = integral(solver, "kinetic_energy");
-        const real start = energy;
-        rise = 0;
-        while (solver.time() < 0.5) {
-            solver.step(solver.advised_dt());
-            const real now = integral(solver, "kinetic_energy");
-            rise = std::max(rise, (now - energy) / start);
-            energy = now;
+namespace {
+
+/// A drop of radius 0.15 m flies at 1 m/s through gas at rest, for half a length of its periodic box.
+struct Flight {
+    real rise = 0, energy = 1, aspect = 0;  // largest rise of energy in a step; at the end; length of the drop over its width
+    bool failed = false;
+    explicit Flight(const Experiment& experiment) {
+        const auto scene = two_phase_scene(drop<2>(n, "initial.liquid_velocity = [1.0, 0.0]"), {{"liquid[0].radius", "0.15"}});
+        TwoPhase<2> solver(scene, {}, experiment);
+        const real start = integral(solver, "kinetic_energy");
+        try {
+            while (solver.time() < 0.5) {
+                solver.step(solver.advised_dt());
+                const real now = integral(solver, "kinetic_energy") / start;
+                rise = std::max(rise, now - energy);
+                energy = now;
+            }
+        } catch (const NumericalFailure&) {
+            failed = true;
         }
-        const int n = 24;
-        real sum = 0, c = 0, s = 0, y = 0;
-        for_each_cell(replicated(solver.fraction().extent()), [&](const Index<2>& I) {
-            const real f = solver.fraction()(I), angle = 2 * pi * (I[0] + 0.5) / n;
-            sum += f, c += f * std::cos(angle), s += f * std::sin(angle), y += f * (I[1] + 0.5);
+        measure(solver.fraction());
+    }
+
+private:
+    static constexpr int n = 24;
+    void measure(const Grid<real, 2>& f) {
+        real sum = 0, c = 0, s = 0, y = 0, along = 0, across = 0;
+        each(f, [&](real part, const Vec<2>& x) {
+            const real angle = 2 * pi * x[0] / n;
+            sum += part, c += part * std::cos(angle), s += part * std::sin(angle), y += part * x[1];
         });
-        const real x = std::atan2(s, c) * n / (2 * pi);
-        real along = 0, across = 0;
-        for_each_cell(replicated(solver.fraction().extent()), [&](const Index<2>& I) {
-            const real dx = std::remainder(I[0] + 0.5 - x, n), dy = I[1] + 0.5 - y / sum;
-            along += solver.fraction()(I) * dx * dx, across += solver.fraction()(I) * dy * dy;
+        const real middle = std::atan2(s, c) * n / (2 * pi);
+        each(f, [&](real part, const Vec<2>& x) {
+            const real dx = std::remainder(x[0] - middle, n), dy = x[1] - y / sum;
+            along += part * dx * dx, across += part * dy * dy;
         });
-        return std::sqrt(along / across);
-    };
-    set_threads(1);
-    real rise = 0;
-    EXPECT_GT(aspect(false, rise), 0.93);  // 0.94 to 0.96 by measurement: the pressure of the gas at the front flattens it
-    EXPECT_LT(rise, 1e-5);
-    EXPECT_LT(aspect(true, rise), 0.85);
+        aspect = std::sqrt(along / across);
+    }
+    template <class F>
+    static void each(const Grid<real, 2>& f, F&& visit) {
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i) visit(f({{i, j}}), Vec<2>{{i + 0.5, j + 0.5}});
+    }
+};
+
+}  // namespace
+
+// Without viscosity and tension energy changes by the limited slopes only, which dissipate; what is left is the tolerance of the pressure.
+// The pressure of the gas at the front flattens the drop: 0.94 to 0.96 by measurement.
+TEST("a drop that is flung through gas keeps its shape and gains no energy") {
+    const Flight flight{Experiment{}};
+    EXPECT_FALSE(flight.failed);
+    EXPECT_GT(flight.aspect, 0.93);
+    EXPECT_LT(flight.rise, 1e-5);
+}
+
+// What one density and one flux are for.
+TEST("with velocity advected by itself, or with another density in the pressure than in the momentum, the drop is squeezed or fails") {
+    EXPECT_LT(Flight(Experiment{.velocity_form = true}).aspect, 0.85);
+    const Flight mean(Experiment{.mean_density = true});
+    EXPECT_TRUE(mean.failed || mean.aspect < 0.9) << mean.aspect << ' ' << mean.rise;
 }
 
 }  // namespace property_tests
