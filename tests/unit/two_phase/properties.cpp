@@ -160,10 +160,10 @@ TEST("a drop that is flung through gas keeps its shape and gains no energy") {
 }
 
 // What one density and one flux are for.
-TEST("with velocity advected by itself, or with another density in the pressure than in the momentum, the drop is squeezed or fails") {
+TEST("with velocity advected by itself the drop is squeezed; with another density in the pressure than in the momentum it gains energy") {
     EXPECT_LT(Flight(Experiment{.velocity_form = true}).aspect, 0.85);
     const Flight mean(Experiment{.mean_density = true});
-    EXPECT_TRUE(mean.failed || mean.aspect < 0.9) << mean.aspect << ' ' << mean.rise;
+    EXPECT_TRUE(mean.failed || mean.rise > 1e-4) << mean.rise;  // ten times what is allowed above
 }
 
 }  // namespace property_tests
