@@ -56,12 +56,12 @@ TEST_IN_2D_AND_3D("a run that is saved and restored continues bit for bit") {
     const auto scene = two_phase_scene(collapse<D>());
     TwoPhase<D> whole(scene), first(scene), second(scene);
     run(whole, 11);
-    run(first, 6);
+    run(first, 7);  // not a multiple of the orders of sweeps
     Checkpoint checkpoint;
     first.save(checkpoint);
     second.restore(checkpoint);
     EXPECT_EQ(second.time(), first.time());
-    run(second, 5);
+    run(second, 4);
     EXPECT_TRUE(same_bits(whole, second));
 }
 
