@@ -9,6 +9,7 @@
 #include "sph/solver.hpp"
 #include "studies/kinds.hpp"
 #include "tallcell/solver.hpp"
+#include "two_phase/solver.hpp"
 #include "water/solver.hpp"
 #include "waves/solver.hpp"
 
@@ -19,6 +20,7 @@ namespace weir::sim {
 const std::vector<scene::SolverKind>& registry() {
     static const std::vector<scene::SolverKind> kinds = {smoke::kind(),
                                                          water::kind(),
+                                                         two_phase::kind(),
                                                          studies::transport_kind(),
                                                          studies::poisson_kind(),
                                                          pbf::kind(),

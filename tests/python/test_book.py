@@ -124,7 +124,7 @@ def test_the_book_has_all_pages_that_its_contents_name():
     named = set(re.findall(r": ([\w/]+\.md)$", navigation, re.M))
     for page in pages:
         assert name_of(page).removeprefix("docs/") in named
-    for solver in ("mac", "mac_water", "tallcell", "heightfield", "waves", "sph", "pbf", "heat", "bodies"):
+    for solver in ("mac", "mac_water", "two_phase", "tallcell", "heightfield", "waves", "sph", "pbf", "heat", "bodies"):
         assert f"book/theory/{solver}.md" in named
 
 

@@ -17,6 +17,20 @@ TEST("Prosperetti's solution reproduces the table to all its digits") {
             EXPECT_NEAR(prosperetti(table.number(i, "omega0_t"), nu, 1, 1, 1), table.number(i, column), 1e-9);  // ten digits are printed
 }
 
+// Values of the closed form, given to six digits.
+TEST("two fluids of one viscosity: waves and growth as by Prosperetti 1981") {
+    const real g = 9.81, k = 2 * pi, nu = 1e-3, beta = 700.0 / (701.0 * 701.0), omega2 = g * k * 699 / 701;
+    const real period = 2 * pi / std::sqrt(omega2);
+    const auto a = [&](real periods) { return prosperetti(periods * period, nu, k, std::sqrt(omega2), 1, beta); };
+    EXPECT_NEAR(a(0.5), -0.971119, 1e-6);
+    EXPECT_NEAR(a(1), 0.941497, 1e-6);
+    EXPECT_NEAR(a(2), 0.886038, 1e-6);
+    EXPECT_NEAR(a(5), 0.738300, 1e-6);
+    EXPECT_NEAR(growth_rate(0.01, k, -omega2, beta), 7.220777, 1e-6);
+    EXPECT_NEAR(growth_rate(nu, k, -g * k / 2, 3.0 / 16), 5.349355, 1e-6);
+    EXPECT_EQ(growth_rate(nu, k, omega2, beta), 0);
+}
+
 TEST("it scales with amplitude, and with time and length") {
     const real k = 3, omega0 = 7, nu = 0.02 * omega0 / (k * k);
     for (real t : {0.1, 1.0, 4.0}) {

@@ -1,0 +1,203 @@
+#include "two_phase/fractions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::two_phase {
+
+using Kind = EndRule::Kind;
+
+template <int D>
+FractionGhosts<D>::FractionGhosts(const geometry::Sides<D>& sides, int component) {
+    boundary_.node_axis = component;
+    for (int axis = 0; axis < D; ++axis)
+        for (auto& rule : boundary_.end[static_cast<std::size_t>(axis)]) rule.kind = sides.periodic(axis) ? Kind::periodic : Kind::neumann;
+    if (component >= 0 && !sides.periodic(component)) mirrored_axis_ = component;
+}
+
+template <int D>
+void FractionGhosts<D>::fill_all(Padded<D>& to, const Grid<real, D>& from) const {
+    fill(to, from, boundary_);
+    mirror_about_sides(to);
+}
+
+template <int D>
+void FractionGhosts<D>::fill_outer(Padded<D>& q) const {
+    fill_ghosts(q, boundary_);
+    mirror_about_sides(q);
+}
+
+/// q(−k) = q(k), q(n + k) = q(n − k) for nodes 0 and n on the sides.
+template <int D>
+void FractionGhosts<D>::mirror_about_sides(Padded<D>& q) const {
+    const int a = mirrored_axis_;
+    if (a < 0) return;
+    Extent<D> lines(q.extent() + Index<D>::constant(2 * ghost_layers));
+    lines[a] = 1;
+    const int n = q.extent()[a] - 1;
+    for_each_cell(lines, [&](const Index<D>& line) {
+        Index<D> from = line - Index<D>::constant(ghost_layers), to = from;
+        for (int k = 1; k <= ghost_layers; ++k) {
+            to[a] = -k, from[a] = std::min(k, n);
+            q(to) = q(from);
+            to[a] = n + k, from[a] = std::max(n - k, 0);
+            q(to) = q(from);
+        }
+    });
+}
+
+template <int D>
+Index<D> Around<D>::operator()(Index<D> I) const {
+    for (int d = 0; d < D; ++d) {
+        const int n = cells_[d];
+        while (I[d] < 0 || I[d] >= n) {
+            if (periodic_[static_cast<std::size_t>(d)])
+                I[d] += I[d] < 0 ? n : -n;
+            else
+                I[d] = I[d] < 0 ? -1 - I[d] : 2 * n - 1 - I[d];
+        }
+    }
+    return I;
+}
+
+template <int D>
+bool Around<D>::wrap(Index<D>& I) const {
+    for (int d = 0; d < D; ++d) {
+        if (I[d] >= 0 && I[d] < cells_[d]) continue;
+        if (!periodic_[static_cast<std::size_t>(d)]) return false;
+        I[d] += I[d] < 0 ? cells_[d] : -cells_[d];
+    }
+    return true;
+}
+
+template <int D>
+void find_face_fractions(const Padded<D>& cells, int axis, Grid<real, D>& faces) {
+    const Strides<D> stride = strides_of(cells);
+    const std::ptrdiff_t below = stride[static_cast<std::size_t>(axis)];
+    for_each_cell(faces.extent(), [&](const Index<D>& I) {
+        const real* f = cells.at(I);
+        faces(I) = 0.5 * (fraction_of_slab<D>(f - below, stride, axis, 1, 0.5) + fraction_of_slab<D>(f, stride, axis, 0, 0.5));
+    });
+}
+
+namespace {
+
+/// The offsets of the 3^D − 1 neighbours of a cell, in the order of their indices.
+template <int D>
+std::vector<Index<D>> neighbours() {
+    std::vector<Index<D>> list;
+    for (int code = 0; code < (D == 2 ? 9 : 27); ++code) {
+        Index<D> by;
+        for (int d = 0, rest = code; d < D; ++d, rest /= 3) by[d] = rest % 3 - 1;
+        if (by != Index<D>{}) list.push_back(by);
+    }
+    return list;
+}
+
+/// Less than nothing, more than all, or too little of one phase to matter: what the cell gives away.
+real dust_of(real f) { return f < dust ? f : f > 1 - dust ? f - 1 : 0; }
+
+/// Distance from one half below which a cell takes dust.
+constexpr real takes_below = 0.5 - 1e-6;
+
+template <int D>
+struct Dust {
+    const Padded<D>& before;
+    const Around<D>& around;
+    const std::vector<Index<D>>& offsets;
+
+    /// The neighbour of I, within the domain, that is closest to one half; the first of several. False: none takes dust.
+    bool receiver(const Index<D>& I, Index<D>& J) const {
+        real closest = takes_below;
+        for (const Index<D>& by : offsets) {
+            Index<D> K = I + by;
+            if (!around.wrap(K)) continue;
+            const real distance = std::abs(before(K) - 0.5);
+            if (distance < closest) closest = distance, J = K;
+        }
+        return closest < takes_below;
+    }
+    /// The change of cell I: it gives its own dust away, or receives that of neighbours.
+    real change(const Index<D>& I) const {
+        const real f = before(I);
+        Index<D> J;
+        if (const real own = dust_of(f); own != 0) return receiver(I, J) ? -own : 0;
+        if (std::abs(f - 0.5) >= takes_below) return 0;
+        real sum = 0;
+        for (const Index<D>& by : offsets) {
+            Index<D> K = I + by;
+            if (!around.wrap(K)) continue;
+            const real given = dust_of(before(K));
+            if (given != 0 && receiver(K, J) && J == I) sum += given;
+        }
+        return sum;
+    }
+};
+
+}  // namespace
+
+template <int D>
+void hand_on_dust(const Padded<D>& before, const Around<D>& around, Grid<real, D>& f) {
+    static const std::vector<Index<D>> offsets = neighbours<D>();
+    const Dust<D> all{before, around, offsets};
+    for_each_cell(f.extent(), [&](const Index<D>& I) { f(I) += all.change(I); });
+}
+
+namespace {
+
+constexpr int sub_cells_2d = 16, sub_cells_3d = 8;  // along each axis: a circle of ten cells' radius then has its area to 1e-5
+
+/// The fraction of a box around x with sides h below the plane that approximates the shape's surface.
+template <int D>
+real fraction_near(const geometry::Shape<D>& shape, const Vec<D>& x, const Vec<D>& h) {
+    const real d = shape.distance(x);
+    Vec<D> m;
+    real steep = 0;
+    for (int a = 0; a < D; ++a) {
+        const Vec<D> by = 0.25 * h[a] * Vec<D>::unit(a);
+        m[a] = 2 * (shape.distance(x + by) - shape.distance(x - by));
+        steep += std::abs(m[a]);
+    }
+    if (steep == 0) return d < 0 ? 1 : 0;
+    real middle = 0;
+    for (int a = 0; a < D; ++a) middle += 0.5 * m[a];
+    return volume_below(m, middle - d);
+}
+
+}  // namespace
+
+template <int D>
+void start_fractions(const geometry::Shape<D>& liquid, const MacVelocity<D>& grid, Grid<real, D>& f) {
+    const int sub = D == 2 ? sub_cells_2d : sub_cells_3d;
+    const Vec<D> h = grid.h / sub;
+    const real reach = 0.5 * liquid.steepest() * norm(grid.h);
+    for_each_cell(f.extent(), [&](const Index<D>& I) {
+        const real d = liquid.distance(grid.cell_centre(I));
+        if (std::abs(d) > reach) {
+            f(I) = d < 0 ? 1 : 0;
+            return;
+        }
+        real sum = 0;
+        const Vec<D> corner = grid.cell_centre(I) - 0.5 * grid.h;
+        for (int code = 0; code < (D == 2 ? sub * sub : sub * sub * sub); ++code) {
+            Vec<D> x = corner;
+            for (int a = 0, rest = code; a < D; ++a, rest /= sub) x[a] += h[a] * (rest % sub + 0.5);
+            sum += fraction_near(liquid, x, h);
+        }
+        f(I) = sum / std::pow(sub, D);
+        if (f(I) < dust) f(I) = 0;
+        if (f(I) > 1 - dust) f(I) = 1;
+    });
+}
+
+#define WEIR_INSTANTIATE(D)                                                         \
+    template class FractionGhosts<D>;                                               \
+    template class Around<D>;                                                       \
+    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);       \
+    template void hand_on_dust(const Padded<D>&, const Around<D>&, Grid<real, D>&); \
+    template void start_fractions(const geometry::Shape<D>&, const MacVelocity<D>&, Grid<real, D>&);
+WEIR_INSTANTIATE(2)
+WEIR_INSTANTIATE(3)
+#undef WEIR_INSTANTIATE
+
+}  // namespace weir::two_phase

@@ -1,0 +1,91 @@
+// The schema of the solver "two_phase".
+#include "mac/grid/kind.hpp"
+#include "mac/grid/initial.hpp"
+#include "two_phase/effects.hpp"
+#include "two_phase/solver.hpp"
+
+namespace weir::two_phase {
+
+using scene::Key;
+using scene::Type;
+
+const mac::EffectKinds& body_forces() {
+    static const mac::EffectKinds kinds{mac::gravity()};
+    return kinds;
+}
+
+std::vector<scene::Variant> effect_schemas() {
+    std::vector<scene::Variant> list = schemas_of(body_forces());
+    list.push_back(
+        {"surface_tension",
+         "Tension of the interface, in balance with the pressure; contact angles are 90 degrees.",
+         {{.name = "sigma", .type = Type::number, .doc = "Surface tension.", .unit = "N/m", .required = true, .min = 0, .min_open = true}},
+         {"sigma"}});
+    list.push_back(
+        {"viscosity", "Viscous stress of both fluids, with fluid.viscosity and gas.viscosity; implicit.", {}, {"fluid.viscosity"}});
+    return list;
+}
+
+namespace {
+
+Key gas_key() {
+    return {.name = "gas",
+            .type = Type::table,
+            .doc = "Properties of the gas, which fills what the liquid leaves.",
+            .required = true,
+            .keys = {{.name = "density",
+                      .type = Type::number,
+                      .doc = "Density.",
+                      .unit = "kg/m^3",
+                      .required = true,
+                      .min = 0,
+                      .min_open = true,
+                      .example = "density = 1.2"},
+                     {.name = "viscosity",
+                      .type = Type::number,
+                      .doc = "Kinematic viscosity. It acts only if effects.viscosity is named.",
+                      .unit = "m^2/s",
+                      .fallback = 0.0,
+                      .min = 0}},
+            .example = "gas = { density = 1.2, viscosity = 1.5e-5 }"};
+}
+
+Key start_keys() {
+    Key initial = initial_keys();
+    initial.keys.push_back({.name = "liquid_velocity",
+                            .type = Type::numbers,
+                            .doc = "Velocity of the liquid at t = 0, instead of `velocity`; the pressure makes both divergence-free.",
+                            .unit = "m/s",
+                            .length = -1});
+    return initial;
+}
+
+}  // namespace
+
+scene::SolverKind kind() {
+    scene::SolverSchema schema;
+    schema.name = "two_phase";
+    schema.doc = "Liquid and gas with an interface, both incompressible: geometric volume of fluid with momentum in the same fluxes.";
+    schema.keys = {{.name = "time",
+                    .type = Type::table,
+                    .keys = {{.name = "cfl",
+                              .type = Type::number,
+                              .doc = "Fraction of a cell that the fastest fluid may leave in one step, all axes together.",
+                              .fallback = 0.5,
+                              .max = 0.5}}},
+                   gas_key(),
+                   scheme_key({PoissonChoice::key()}),
+                   start_keys()};
+    schema.effects = effect_schemas();
+    schema.without = {"solids",       "emitters", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "initial.temperature",
+                      "initial.smoke"};
+    schema.why_without =
+        "this solver has walls, p = 0 on open sides and periodic axes only; \"mac_water\" has solids, bodies, emitters and heat";
+    return {schema,
+            [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
+            {{"velocity", "pressure", fraction_name, level_set_name},
+             {"transport momentum", "transport liquid", "densities", "project"},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ngas = { density = 0.01 }\ninitial.velocity = \"random\""}};
+}
+
+}  // namespace weir::two_phase

@@ -1,0 +1,163 @@
+#include "two_phase/solver.hpp"
+
+#include "core/error.hpp"
+#include "mac/grid/inflow.hpp"
+#include "two_phase/tension.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weir::two_phase {
+
+/// One step. Before and after it the velocity is divergence-free to the tolerance of the pressure, and the fractions of the faces are those
+/// of the cells.
+template <int D>
+StepReport TwoPhase<D>::step(real dt) {
+    ++ruled_[static_cast<std::size_t>(ruling_bound())];
+    transport(dt);                                      // ∂f/∂t + ∇·(f u) = 0,  ∂(ρu)/∂t + ∇·(ρ u u) = 0
+    find_face_densities();                              // ρ_a of the half cells beside each face
+    apply_viscosity(dt);                                // (ρ_a − dt ∇·2μD) u = ρ_a u
+    effects_.apply(Stage::force, state_, dt, passes_);  // u += dt g
+    apply_tension(dt);                                  // u += dt σ κ ∇f / ρ_a
+    const poisson::Report& poisson = project(dt);       // u −= dt ∇p / ρ_a,  ∇·u = 0
+    find_rate();
+    check();
+    ++steps_;
+    state_.time += dt;
+    return {.dt = dt,
+            .cfl = dt * rate_,
+            .max_divergence = max_divergence(state_),
+            .iterations = poisson.iterations,
+            .residual_before = poisson.residual_before,
+            .residual_after = poisson.residual_after,
+            .residual_max = poisson.residual_max / (state_.u.h[0] * state_.u.h[0]),
+            .viscous_iterations = viscosity_ ? viscosity_->iterations() : 0};
+}
+
+template <int D>
+void TwoPhase<D>::transport(real dt) {
+    for (int a = 0; a < D; ++a) fill(state_.before[a], state_.u[a], mirrored_[static_cast<std::size_t>(a)]);
+    const Motion<D> motion{state_.before, dt, sweep_order<D>(steps_ + experiment_.first_order_of_sweeps)};
+    const Densities rho = experiment_.velocity_form ? Densities{} : options_.rho;
+    {
+        const auto timed = passes_.time("transport momentum");
+        for (int a = 0; a < D; ++a) {
+            const auto at = static_cast<std::size_t>(a);
+            transport_.advect_momentum(a, motion, faces_[at], state_.boundary[at], rho, state_.u[a]);
+        }
+        set_side_faces(state_.u, state_.sides, state_.nu);
+        sync_periodic(state_.u, state_.sides);
+    }
+    const auto timed = passes_.time("transport liquid");
+    Grid<real, D>& f = state_.fields[0].values;
+    transport_.advect_fraction(motion, f);
+    ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
+    hand_on_dust(fraction_ghosts_, around_, f);
+    distance_is_stale_ = true;
+}
+
+/// The fractions of the faces' volumes, and the response of their velocity to the pressure.
+template <int D>
+void TwoPhase<D>::find_face_densities() {
+    const auto timed = passes_.time("densities");
+    ghosts_of_fraction_.fill_all(fraction_ghosts_, fraction());
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        find_face_fractions(fraction_ghosts_, a, faces_[at]);
+        const auto mean = [&](const Index<D>& I) {
+            return std::clamp(0.5 * (fraction_ghosts_(I - e<D>(a)) + fraction_ghosts_(I)), 0.0, 1.0);
+        };
+        for_each_cell(faces_[at].extent(), [&](const Index<D>& I) {
+            state_.mobility[at](I) = state_.rho / options_.rho.of(experiment_.mean_density ? mean(I) : faces_[at](I));
+        });
+    }
+}
+
+template <int D>
+void TwoPhase<D>::apply_viscosity(real dt) {
+    if (!viscosity_) return;
+    const auto timed = passes_.time("effect viscosity");
+    viscosity_->apply(state_, fraction_ghosts_, faces_, options_.rho, dt);
+}
+
+template <int D>
+void TwoPhase<D>::apply_tension(real dt) {
+    if (options_.sigma == 0) return;
+    const auto timed = passes_.time("effect surface_tension");
+    if (experiment_.fixed_curvature != 0)
+        for_each_cell(curvature_.kappa.extent(), [&](const Index<D>& I) {
+            curvature_.kappa(I) = is_interfacial(fraction_ghosts_, I) ? experiment_.fixed_curvature : no_curvature;
+        });
+    else
+        find_curvature(interface(), experiment_.curvature, curvature_);
+    add_tension<D>(state_, fraction_ghosts_, around_, curvature_.kappa, faces_, options_.rho, options_.sigma, dt);
+}
+
+template <int D>
+const poisson::Report& TwoPhase<D>::project(real dt) {
+    const auto timed = passes_.time("project");
+    sync_periodic(state_.u, state_.sides);
+    projection_.set_matrix(state_);
+    return projection_.project(state_, dt);
+}
+
+/// Weymouth & Yue's measure of a step: the cells that leave a cell along all axes together.
+template <int D>
+void TwoPhase<D>::find_rate() {
+    rate_ = max_over(state_.extent(), [&](const Index<D>& I) {
+        real sum = 0;
+        for (int a = 0; a < D; ++a) sum += larger_or_nan(std::abs(state_.u[a](I)), std::abs(state_.u[a](I + e<D>(a)))) / state_.u.h[a];
+        return sum;
+    });
+}
+
+template <int D>
+void TwoPhase<D>::check() const {
+    if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "the velocity is not finite");
+    if (!std::isfinite(max_magnitude(state_.p))) throw NumericalFailure("pressure", "the pressure is not finite");
+    const real outside = max_magnitude(fraction(), 0.5) - 0.5;
+    if (!(outside < 0.01))
+        throw NumericalFailure("fraction", "the liquid fraction of a cell is outside [0, 1] by " + std::to_string(outside));
+}
+
+/// The largest step that a bound allows; infinity where it does not apply. Half of what is stable: see stable_dt().
+template <int D>
+real TwoPhase<D>::limit(Bound bound) const {
+    const real h = *std::min_element(state_.u.h.begin(), state_.u.h.end());
+    const Densities& rho = options_.rho;
+    switch (bound) {
+        case Bound::speed:
+            return rate_ > 0 ? options_.cfl / rate_ : infinity;
+        case Bound::tension:  // Brackbill, Kothe & Zemach 1992, eq. 61
+            return options_.sigma > 0 ? 0.5 * std::sqrt((rho.liquid + rho.gas) * h * h * h / (4 * pi * options_.sigma)) : infinity;
+        case Bound::gravity:
+            return options_.gravity > 0 ? 0.5 * std::sqrt(h / options_.gravity) : infinity;
+    }
+    return infinity;
+}
+
+template <int D>
+Bound TwoPhase<D>::ruling_bound() const {
+    Bound least = Bound::speed;
+    for (const Bound bound : {Bound::tension, Bound::gravity})
+        if (limit(bound) < limit(least)) least = bound;
+    return least;
+}
+
+template <int D>
+real TwoPhase<D>::advised_dt() const {
+    return std::min(limit(ruling_bound()), effects_.max_dt(state_));
+}
+
+template <int D>
+StepLimit TwoPhase<D>::stable_dt() const {
+    StepLimit least{rate_ > 0 ? 0.5 / rate_ : infinity, "the fluid may leave half of a cell: the fraction stays in [0, 1] up to it"};
+    if (const real dt = 2 * limit(Bound::tension); dt < least.dt) least = {dt, "the shortest capillary wave is stable up to it"};
+    if (const real dt = 2 * limit(Bound::gravity); dt < least.dt) least = {dt, "the shortest gravity wave is stable up to it"};
+    return least;
+}
+
+template class TwoPhase<2>;
+template class TwoPhase<3>;
+
+}  // namespace weir::two_phase

@@ -1,0 +1,129 @@
+// The initial state of a scene with liquid and gas.
+#include "free_surface/start.hpp"
+#include "core/error.hpp"
+#include "mac/grid/effects.hpp"
+#include "mac/grid/inflow.hpp"
+#include "mac/grid/initial.hpp"
+#include "scene/names.hpp"
+#include "two_phase/effects.hpp"
+#include "two_phase/solver.hpp"
+
+namespace weir::two_phase {
+
+Options::Options(const scene::Scene& scene) : poisson(scene.root().table("scheme").table("poisson")) {
+    rho = {scene.number("fluid.density"), scene.number("gas.density")};
+    if (scene.effect("viscosity")) nu_liquid = scene.number("fluid.viscosity"), nu_gas = scene.number("gas.viscosity");
+    if (const auto* tension = scene.effect("surface_tension")) sigma = tension->number("sigma");
+    cfl = scene.number("time.cfl");
+}
+
+namespace {
+
+FieldPlan fields() {
+    FieldPlan plan;
+    plan.advected(fraction_name);
+    return plan;
+}
+
+/// The same sides without friction at walls.
+template <int D>
+geometry::Sides<D> frictionless(geometry::Sides<D> sides) {
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1}) {
+            auto& side = sides.side(a, end);
+            if (side.kind == geometry::SideKind::moving_wall) side.kind = geometry::SideKind::wall;
+            side.no_slip = false;
+            side.velocity = {};
+        }
+    return sides;
+}
+
+}  // namespace
+
+template <int D>
+TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experiment& experiment)
+    : options_(scene),
+      experiment_(experiment),
+      state_(scene, two_phase::fields()),
+      ghosts_of_fraction_(state_.sides, -1),
+      around_(state_.sides, state_.u.cells),
+      effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
+      gravity_(free_surface::gravity_of<D>(scene)),
+      up_(free_surface::up_axis<D>(gravity_)),
+      transport_(state_),
+      fraction_ghosts_(state_.extent()),
+      projection_(options_.poisson, state_) {
+    refuse_sides(scene);
+    free_surface::refuse_flat_cells(scene, free_surface::Frame<D>(state_.u, state_.sides));
+    options_.gravity = norm(gravity_);
+    state_.rho = options_.rho.lightest();
+    state_.before = PaddedVelocity<D>(state_.u);
+    const geometry::Sides<D> slip = frictionless(state_.sides);
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        mirrored_[at] = velocity_boundary(slip, state_.u, a, 0);
+        faces_[at] = state_.mobility[at] = Grid<real, D>(state_.u[a].extent());
+    }
+    if (options_.sigma > 0) {
+        curvature_ = {Grid<real, D>(state_.extent(), no_curvature), Grid<real, D>(state_.extent(), no_curvature)};
+        effects_.declare({.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = curvature_.bytes()});
+    }
+    if (scene.effect("viscosity")) {
+        viscosity_ = std::make_unique<Viscosity<D>>(state_, options_.rho.liquid * options_.nu_liquid, options_.rho.gas * options_.nu_gas);
+        effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes() + sizeof(*viscosity_)});
+    }
+    start_liquid(scene);
+    start_velocity(scene);
+    find_rate();
+}
+
+template <int D>
+void TwoPhase<D>::refuse_sides(const scene::Scene& scene) const {
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1})
+            if (state_.sides.side(a, end).kind == geometry::SideKind::inflow)
+                scene.refuse(
+                    std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max") + ".kind",
+                    "solver \"two_phase\" does not support sides of kind \"inflow\": the fraction of the fluid that enters is not known",
+                    "wall, moving_wall, outflow (p = 0) or periodic");
+}
+
+template <int D>
+void TwoPhase<D>::start_liquid(const scene::Scene& scene) {
+    const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
+    if (shapes.empty()) scene.refuse("liquid", "a scene of liquid and gas needs liquid: at least one shape");
+    const auto liquid = geometry::unite<D>(shapes);
+    start_fractions<D>(*liquid, state_.u, state_.fields[0].values);
+    if (sum_over(state_.extent(), [&](const Index<D>& I) { return fraction()(I); }) == 0)
+        scene.refuse("liquid", "there is no liquid in the domain");
+    find_face_densities();
+}
+
+/// A given velocity is made divergence-free; the pressure of that projection is not one of the flow.
+template <int D>
+void TwoPhase<D>::start_velocity(const scene::Scene& scene) {
+    set_initial_velocity(state_, scene);
+    const bool liquid_moves = scene.has("initial.liquid_velocity");
+    if (liquid_moves) {
+        const Vec<D> u = scene.root().vec<D>("initial.liquid_velocity");
+        for (int a = 0; a < D; ++a)
+            for_each_free_face(state_.u, state_.sides, a, [&](const Index<D>& I) {
+                if (fraction_ghosts_(I - e<D>(a)) + fraction_ghosts_(I) > 0) state_.u[a](I) = u[a];
+            });
+        sync_periodic(state_.u, state_.sides);
+    }
+    if (!liquid_moves && scene.root().text_or("initial.velocity.name", "rest") == "rest") return;
+    project(1);
+    state_.p.fill(0);
+}
+
+template TwoPhase<2>::TwoPhase(const scene::Scene&, const Partition&, const Experiment&);
+template TwoPhase<3>::TwoPhase(const scene::Scene&, const Partition&, const Experiment&);
+template void TwoPhase<2>::refuse_sides(const scene::Scene&) const;
+template void TwoPhase<3>::refuse_sides(const scene::Scene&) const;
+template void TwoPhase<2>::start_liquid(const scene::Scene&);
+template void TwoPhase<3>::start_liquid(const scene::Scene&);
+template void TwoPhase<2>::start_velocity(const scene::Scene&);
+template void TwoPhase<3>::start_velocity(const scene::Scene&);
+
+}  // namespace weir::two_phase

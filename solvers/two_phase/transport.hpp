@@ -1,0 +1,78 @@
+// Transport of liquid and momentum by geometric fluxes, in sweeps along one axis each (Weymouth & Yue 2010, eq. 10 to 18):
+//
+//     f += F(lower face) − F(upper face) + c dC,      dC = C(upper) − C(lower),   C = u dt/h,   c = [f > ½ at the start]
+//
+// F is the liquid that crosses a face, in cells. f stays in [0, 1] for Σ|C| ≤ ½. The last sweep takes Σ c dC back: the sum of all sweeps is
+// a pure flux form, so the volume is exact for any divergence that the pressure left. Momentum is carried by the mass in the same fluxes,
+// ρ_l F + ρ_g (C − F), in the control volumes of the faces (Rudman 1998; Bussmann, Kothe & Sicilian 2002).
+#pragma once
+#include "two_phase/fractions.hpp"
+
+#include <cstdint>
+
+namespace weir::two_phase {
+
+/// The densities of both phases [kg/m³].
+struct Densities {
+    real liquid = 1, gas = 1;
+    real of(real fraction) const { return gas + (liquid - gas) * fraction; }
+    real lightest() const { return std::min(liquid, gas); }
+};
+
+/// The axes of the sweeps of a step: every order in turn.
+template <int D>
+std::array<int, D> sweep_order(std::int64_t step);
+
+/// Motion during a step.
+template <int D>
+struct Motion {
+    const PaddedVelocity<D>& u;  // at the start of the step, mirrored at walls [m/s]
+    real dt;                     // [s]
+    std::array<int, D> order;    // of the sweeps
+};
+
+template <int D>
+class Transport {
+public:
+    explicit Transport(const MacState<D>& state);
+    /// Advects the fractions of cells.
+    void advect_fraction(const Motion<D>& motion, Grid<real, D>& f);
+    /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start;
+    /// `carried`: the conditions of the component at the sides; `to`: the new component.
+    void advect_momentum(int a, const Motion<D>& motion, const Grid<real, D>& fractions, const Boundary<D>& carried, const Densities& rho,
+                         Grid<real, D>& to);
+    std::size_t bytes() const;
+
+private:
+    /// The control volumes of a transport: those of the cells (component −1) or of the faces along an axis.
+    struct Volumes {
+        int component;
+        const Motion<D>& motion;
+        Vec<D> per_cell;             // dt/h
+        const Grid<real, D>& start;  // fractions at the start
+        Padded<D>& f;                // and now
+        Padded<D>* q;                // velocity component in the volumes; nullptr: only liquid is transported
+        Densities rho;
+        /// C of the lower face along axis d: the mean over the two cells of a face's volume.
+        real courant(int d, const Index<D>& I) const {
+            const Padded<D>& u = motion.u[d];
+            return per_cell[d] * (component < 0 ? u(I) : 0.5 * (u(I - e<D>(component)) + u(I)));
+        }
+        real dilation(int d, const Index<D>& I) const { return courant(d, I + e<D>(d)) - courant(d, I); }
+    };
+    void run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
+    void find_fluxes(const Volumes& v, int d);
+    void add_fluxes(const Volumes& v, int number);
+
+    Vec<D> per_cell(real dt) const;
+
+    Vec<D> spacing_{};  // [m]
+    FractionGhosts<D> cell_ghosts_;
+    std::array<FractionGhosts<D>, D> face_ghosts_;
+    Padded<D> cell_fraction_;
+    std::array<Padded<D>, D> face_fraction_;
+    PaddedVelocity<D> velocity_;
+    Grid<real, D> liquid_flux_, momentum_flux_;  // through the lower faces of the volumes
+};
+
+}  // namespace weir::two_phase

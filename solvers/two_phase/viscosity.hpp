@@ -1,0 +1,52 @@
+// Viscosity with a jump: (ρ_a − dt ∇·2μD) u = ρ_a u*, implicit, all components at once, by conjugate gradients with the diagonal. ρ_a is
+// that of the faces' volumes; μ = f μ_l + (1 − f) μ_g in cells, and the mean of four cells at edges. Edges on sides that are not no-slip
+// walls bear no shear.
+#pragma once
+#include "linear/conjugate_gradients.hpp"
+#include "two_phase/transport.hpp"
+
+namespace weir::two_phase {
+
+template <int D>
+class Viscosity {
+public:
+    /// mu_liquid, mu_gas: dynamic viscosities [Pa s].
+    Viscosity(const MacState<D>& state, real mu_liquid, real mu_gas);
+    /// u* → u over dt. `f`: fractions of cells with a layer of ghosts; `faces`: of the faces' volumes.
+    void apply(MacState<D>& state, const Padded<D>& f, const FaceFractions<D>& faces, const Densities& rho, real dt);
+    int iterations() const { return iterations_; }
+    std::size_t bytes() const;
+
+    // The system of linear::conjugate_gradients; norms are those of D^(-1/2) r, D the diagonal.
+    static constexpr linear::Norm norm = linear::Norm::residual;
+    real precondition();
+    void update_direction(real beta);
+    real multiply();
+    real advance(real alpha);
+
+private:
+    void find_viscosities(const Padded<D>& f);
+    void find_coefficients();
+    bool bears_shear(int a, int b, const Index<D>& I) const;
+    void multiply_row(int a, const Index<D>& first, int count, real* result) const;
+    real start();
+    void clear_walls();
+    Grid<real, D>& edge(int a, int b) { return edge_mu_[static_cast<std::size_t>(D == 2 ? 0 : 3 - a - b)]; }
+    const Grid<real, D>& edge(int a, int b) const { return edge_mu_[static_cast<std::size_t>(D == 2 ? 0 : 3 - a - b)]; }
+    template <class F>
+    void for_each_row(F&& f) const;
+    template <class F>
+    real sum_of_rows(F&& f) const;
+
+    real mu_liquid_, mu_gas_;
+    Padded<D> cell_mu_;                                  // [Pa s]
+    std::array<Grid<real, D>, D == 2 ? 1 : 3> edge_mu_;  // of the edges along axis k; in 2D the nodes
+    std::array<Boundary<D>, D> boundary_, homogeneous_;
+    PaddedVelocity<D> direction_;                         // p; at the start u*
+    MacVelocity<D> residual_, product_, mass_, inverse_;  // mass: ρ_a; inverse: of the diagonal
+    MacState<D>* state_ = nullptr;                        // of the present call, with those below
+    real dt_ = 0, norm_of_b_ = 0;
+    int iterations_ = 0;
+};
+
+}  // namespace weir::two_phase

@@ -1,0 +1,82 @@
+// Scenes of liquid and gas for the tests.
+#pragma once
+#include "core/parallel.hpp"
+#include "support/test.hpp"
+#include "two_phase/solver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace weir::test {
+
+inline scene::Scene two_phase_scene(const std::string& text, const std::vector<scene::Override>& changes = {}) {
+    static const std::vector<scene::SolverSchema> schemas{two_phase::kind().schema};
+    return scene::parse(text, "two_phase.toml", schemas, changes);
+}
+
+inline std::string list(std::vector<std::string> entries, int dim) {
+    std::string text = "[";
+    for (int d = 0; d < dim; ++d) text += (d ? ", " : "") + entries[static_cast<std::size_t>(d)];
+    return text + "]";
+}
+
+/// A tank of 1 m by 1 m (by 0.75 m), 1000:1, with a column of liquid in its lower left corner. Viscosities and tension are so large that
+/// each of them matters within a few steps.
+template <int D>
+std::string collapse(const std::string& more = "") {
+    return fmt::format(R"(solver = "two_phase"
+dim = {}
+grid = {{ cells = {}, size = {} }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1000.0, viscosity = 1e-3 }}
+gas = {{ density = 1.0, viscosity = 1e-2 }}
+liquid = [ {{ shape = "box", min = {}, max = {} }} ]
+effects = {{ gravity = {{ g = {} }}, viscosity = {{}}, surface_tension = {{ sigma = 10.0 }} }}
+scheme = {{ poisson = {{ tolerance = 1e-10 }} }}
+{}
+)",
+                       D, list({"16", "16", "12"}, D), list({"1.0", "1.0", "0.75"}, D), list({"0.0", "0.0", "0.0"}, D),
+                       list({"0.41", "0.63", "0.33"}, D), list({"0.0", "-9.81", "0.0"}, D), more);
+}
+
+/// A periodic box of n^D cells and 1 m with a drop of radius 0.2 m in its middle, 1000:1, without forces.
+template <int D>
+std::string drop(int n, const std::string& more = "") {
+    const std::string cells = std::to_string(n);
+    return fmt::format(R"(solver = "two_phase"
+dim = {}
+grid = {{ cells = {}, size = {}, periodic = {} }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1000.0 }}
+gas = {{ density = 1.0 }}
+liquid = [ {{ shape = "sphere", centre = {}, radius = 0.2 }} ]
+scheme = {{ poisson = {{ tolerance = 1e-12 }} }}
+{}
+)",
+                       D, list({cells, cells, cells}, D), list({"1.0", "1.0", "1.0"}, D), list({"\"x\"", "\"y\"", "\"z\""}, D),
+                       list({"0.5", "0.5", "0.5"}, D), more);
+}
+
+inline real integral(const Solver& solver, const std::string& name) {
+    for (const auto& value : solver.integrals())
+        if (value.name == name) return value.value;
+    ADD_FAILURE() << "no integral " << name;
+    return 0;
+}
+
+template <int D>
+void run(two_phase::TwoPhase<D>& solver, int steps) {
+    for (int step = 0; step < steps; ++step) solver.step(solver.advised_dt());
+}
+
+template <int D>
+real max_speed(const two_phase::TwoPhase<D>& solver) {
+    real most = 0;
+    for (int a = 0; a < D; ++a) most = std::max(most, mac::max_magnitude(solver.state().u[a]));
+    return most;
+}
+
+}  // namespace weir::test
