@@ -12,8 +12,13 @@ namespace {
 std::size_t at(int a) { return static_cast<std::size_t>(a); }
 
 /// Integrals that are places, energies of places, or counts of what a method did.
-const std::set<std::string> from_the_start{"potential_energy", "bodies_potential_energy", "mean_height", "top", "mean_level",
-                                           "front_x",          "height_at_x_min"};
+const std::set<std::string> from_the_start{"potential_energy", "bodies_potential_energy",
+                                           "mean_height",      "top",
+                                           "mean_level",       "front_x",
+                                           "height_at_x_min",  "centre_x",
+                                           "centre_y",         "centre_z",
+                                           "gas_centre_x",     "gas_centre_y",
+                                           "gas_centre_z"};
 const std::set<std::string> along_x{"front_x", "height_at_x_min"}, along_y{"mean_height", "top", "mean_level", "height_at_x_min"};
 const std::set<std::string> pseudo{"angle", "rotation", "spin", "torque", "viscous_torque"};
 const std::set<std::string> never{"id", "max_divergence", "angular_momentum_z", "total_level_set"};

@@ -44,7 +44,7 @@ int Transformation::handedness() const {
 namespace {
 
 const std::set<std::string> places{"min", "max", "centre", "point", "from", "to", "at", "anchor", "surface", "origin", "centre_of_mass"};
-const std::set<std::string> directions{"velocity", "g", "gradient", "value", "normal", "axis", "amplitude", "offset"};
+const std::set<std::string> directions{"velocity", "liquid_velocity", "g", "gradient", "value", "normal", "axis", "amplitude", "offset"};
 const std::set<std::string> extents{"size", "cells"};
 /// Lists and numbers that lie in the frame of the domain in a way of their own.
 const std::set<std::string> tied_to_the_frame{"over", "corner", "x", "depth", "nodata", "black", "white", "file"};
