@@ -85,7 +85,7 @@ scene::SolverKind kind() {
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},
              {"transport momentum", "transport liquid", "densities", "project"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ngas = { density = 0.01 }\ninitial.velocity = \"random\""}};
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ngas = { density = 1.2 }\ninitial.velocity = \"random\""}};
 }
 
 }  // namespace weir::two_phase
