@@ -1,6 +1,7 @@
 // How a rank waits for other ranks. A rank that polls on a processor of its own sees a message at once. Where other processes are busy too,
 // a polling rank uses up its time slice and is not running when the message arrives: it must sleep instead.
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <thread>
@@ -29,7 +30,7 @@ public:
     explicit PollingWaitBy(std::chrono::microseconds longest) : longest_(longest) {}
 
     /// Returns when done() is true: polls, then sleeps between polls. After a wait in which other processes used the processor, waits sleep
-    /// at once, for one second.
+    /// at once for a while. A single loss costs little: the while is short, and doubles where polls lose the processor again soon after it.
     template <class Done>
     void until(Done&& done) {
         if (done()) return;
@@ -48,7 +49,7 @@ public:
     /// A poll that lost this much of its time lost the processor to another process: time slices are some milliseconds, interrupts some ten
     /// microseconds. Shorter polling waits waste little and stay unchanged.
     static constexpr std::chrono::microseconds lost{500};
-    static constexpr std::chrono::seconds busy{1};
+    static constexpr std::chrono::milliseconds shortest_sleep{10}, longest_sleep{1000};
 
 private:
     using duration = typename Times::duration;
@@ -61,12 +62,17 @@ private:
         for (; !is_done && now - start < longest_; now = Times::now())
             if (!(is_done = done())) Times::yield();  // to the rank that is waited for, where there are more ranks than processors
         const duration own = Times::own() - before;
-        if (longest_ > lost && now - start - own > lost) busy_until_ = now + busy, busy_ += busy;
+        if (longest_ > lost && now - start - own > lost) sleep_from(now);
         return is_done;
+    }
+    void sleep_from(duration now) {
+        const bool again = sleep_ > duration::zero() && now < busy_until_ + sleep_;
+        sleep_ = again ? std::min<duration>(2 * sleep_, longest_sleep) : duration(shortest_sleep);
+        busy_until_ = now + sleep_, busy_ += sleep_;
     }
 
     std::chrono::microseconds longest_;
-    duration busy_until_{};
+    duration busy_until_{}, sleep_{};  // waits sleep at once until then; for how long
     duration busy_{};
 };
 

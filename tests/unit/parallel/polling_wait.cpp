@@ -50,7 +50,7 @@ TEST("a wait polls for as long as it may, and sleeps between polls from then on"
     EXPECT_EQ(never.busy_seconds(), 0);
 }
 
-TEST("a poll that loses the processor is the last for a second: waits sleep at once, and the time is reported") {
+TEST("after a poll that loses the processor waits sleep at once for 10 ms, and the time is reported") {
     Wait wait(milliseconds(2));
     EXPECT_EQ(polls_until(wait, microseconds(0), milliseconds(1)), 1);  // done at once: no wait
     EXPECT_EQ(wait.busy_seconds(), 0);
@@ -58,8 +58,8 @@ TEST("a poll that loses the processor is the last for a second: waits sleep at o
     const double before = wait.busy_seconds();
     EXPECT_LE(polls_until(wait, milliseconds(4)), 2);
     EXPECT_NEAR(wait.busy_seconds() - before, 0.004, 5e-5);
-    TestTimes::lose(milliseconds(1000));
-    EXPECT_NEAR(wait.busy_seconds(), 1, 1e-9);
+    TestTimes::lose(milliseconds(10));
+    EXPECT_NEAR(wait.busy_seconds(), 0.01, 1e-9);
     EXPECT_EQ(polls_until(wait, milliseconds(1)), 1000);  // it polls again
     Wait little(milliseconds(2));
     polls_until(little, milliseconds(1), microseconds(1));  // in all 0.5 ms, as interrupts take
@@ -67,6 +67,21 @@ TEST("a poll that loses the processor is the last for a second: waits sleep at o
     Wait short_polls(microseconds(100));
     polls_until(short_polls, milliseconds(3), milliseconds(1));
     EXPECT_EQ(short_polls.busy_seconds(), 0);  // it sleeps soon enough
+}
+
+TEST("losses that come soon after one another double the time without polls, up to a second; a rare one does not") {
+    Wait wait(milliseconds(2));
+    const auto next = [&](microseconds after) {  // a loss that comes so long after the last while of sleep
+        const double before = wait.busy_seconds();
+        TestTimes::lose(after);
+        polls_until(wait, milliseconds(3), milliseconds(1));
+        while (polls_until(wait, microseconds(100)) < 50) {  // until it polls again
+        }
+        return wait.busy_seconds() - before;
+    };
+    double expected = 0.01;
+    for (int loss = 0; loss < 9; ++loss, expected = std::min(2 * expected, 1.0)) EXPECT_NEAR(next(microseconds(0)), expected, 1e-3);
+    EXPECT_NEAR(next(milliseconds(1100)), 0.01, 1e-3);
 }
 
 }  // namespace
