@@ -3,8 +3,8 @@
 
 #include "app/commands.hpp"
 #include "core/error.hpp"
-#include "matter/substance.hpp"
 #include "sim/registry.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -18,7 +18,7 @@ namespace {
 /// "substance water" asks for the numbers; a substance that a scene has to give them for is described like any other kind of thing.
 std::string text_about(const std::vector<std::string>& topic) {
     if (topic.size() == 2 && topic[0] == "substance")
-        return topic[1] == thermo::water()->name() ? matter::describe(*thermo::water()) : scene::describe(topic[1], sim::schemas());
+        return topic[1] == thermo::water()->name() ? thermo::describe(*thermo::water()) : scene::describe(topic[1], sim::schemas());
     std::string words;
     for (const auto& word : topic) words += (words.empty() ? "" : " ") + word;
     return scene::describe(words, sim::schemas());

@@ -21,7 +21,7 @@ cd "$root/solvers"
 # In few pieces, since headers take most of a compiler's time. device_fluid.cpp has types in its unnamed namespace that device_solids.cpp has too.
 {
     echo '#include "benchmarks/gpu_particles/load_opencl.hpp"'
-    printf '#include "%s"\n' core/{exact_sum,hex_number,parallel}.cpp parallel/{checkpoint,communicator,plane_store,slab}.cpp geometry/*.cpp backend/{choice,opencl}.cpp matter/ambient.cpp pbf/{bodies,options}.cpp \
+    printf '#include "%s"\n' core/{exact_sum,hex_number,parallel}.cpp parallel/{checkpoint,communicator,plane_store,slab}.cpp geometry/*.cpp backend/{choice,opencl}.cpp thermo/ambient.cpp pbf/{bodies,options}.cpp \
         particles/opencl/{device_bodies,device_heat,device_memory,device_neighbours,device_sides,device_solids}.cpp \
         particles/state/{domain,emitters,fluid,frame,kernels,scheme,solver}.cpp particles/boundaries/{solid_terms,squeezed,walls}.cpp \
         particles/{heat/heat,ranks/particle_exchange,threads/cell_sort}.cpp

@@ -47,7 +47,7 @@ void Heat<D>::note(MacState<D>& s) {
 template <int D>
 void Heat<D>::conduct(MacState<D>& s, real dt) {
     if (supply_.ambient().pressure_changes()) {
-        melting_ = matter::melting_at(*substance_, supply_.ambient().pressure(s.time + dt));
+        melting_ = thermo::melting_at(*substance_, supply_.ambient().pressure(s.time + dt));
         conduction_.set_melting(melting_);
     }
     const auto& source = supply_.at(s.time, dt, s, conduction_);
@@ -61,7 +61,7 @@ template <int D>
 void Heat<D>::apply_buoyancy(MacState<D>& s, real dt) const {
     if (!lightness_) return;
     constexpr int up = 1;
-    const matter::Lightness& light = *lightness_;
+    const thermo::Lightness& light = *lightness_;
     const auto& T = s["temperature"];
     const Nodes<D> faces = free_faces(s.u, s.sides, up);
     for_each_row(faces.lo, faces.hi, [&](const Index<D>& first, int count) {

@@ -9,15 +9,15 @@
 #include "mac/heat/conduction.hpp"
 #include "mac/heat/heat_supply.hpp"
 #include "mac/heat/ice.hpp"
-#include "matter/melting.hpp"
 #include "parallel/grid.hpp"
 #include "smoke/effects.hpp"
+#include "thermo/melting.hpp"
 
 #include <optional>
 
 namespace weir::smoke {
 
-using matter::Melting;
+using thermo::Melting;
 
 template <int D>
 class Heat {
@@ -57,7 +57,7 @@ private:
     thermo::SubstancePtr substance_;
     Melting melting_;                             // at the present pressure
     real gravity_;                                // that drives buoyancy [m/s²]
-    std::optional<matter::Lightness> lightness_;  // where there is buoyancy
+    std::optional<thermo::Lightness> lightness_;  // where there is buoyancy
     real cfl_;
     real drag_;                    // C [kg/(m³ s)]
     bool explicit_, beside_flow_;  // one explicit stage; in flux form, conduction within each flow stage: steady states independent of dt

@@ -1,10 +1,10 @@
 // Heat settings of a scene for the solver "mac": substance, conduction, heat from sides and heaters, initial temperatures.
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
-#include "matter/heat.hpp"
-#include "matter/substance.hpp"
 #include "scene/names.hpp"
 #include "smoke/heat.hpp"
+#include "thermo/heat_keys.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ using scene::Type;
 
 template <int D>
 std::vector<Key> Heat<D>::keys() {
-    return matter::keys_on_a_grid(
+    return thermo::keys_on_a_grid(
         "heat, melting and freezing be simulated",
         {{.name = "conduction",
           .type = Type::choice,
@@ -38,8 +38,8 @@ void Heat<D>::needs(FieldPlan& plan) {
 
 template <int D>
 Heat<D>::Heat(const scene::Scene& scene, MacState<D>& s)
-    : substance_(matter::substance_of(scene)),
-      melting_(matter::melting_of(scene, "mac")),
+    : substance_(thermo::substance_of(scene)),
+      melting_(thermo::melting_of(scene, "mac")),
       gravity_(scene.number("heat.lift")),
       cfl_(scene.number("time.cfl")),
       drag_(scene.number("heat.drag")),

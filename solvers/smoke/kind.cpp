@@ -4,10 +4,10 @@
 #include "mac/grid/inflow.hpp"
 #include "mac/grid/initial.hpp"
 #include "mac/grid/own_planes.hpp"
-#include "matter/heat.hpp"
 #include "scene/one_process.hpp"
 #include "smoke/effects.hpp"
 #include "smoke/solver.hpp"
+#include "thermo/heat_keys.hpp"
 
 namespace weir::smoke {
 
@@ -29,7 +29,7 @@ Key sides_key() {
                                 .doc = "uniform; parabolic: the mean of 6 s (1 - s); kovasznay: the exact wake at Re = 1 / viscosity.",
                                 .fallback = std::string("uniform"),
                                 .choices = inflow_profiles()}}}};
-            side.variants.push_back(matter::wall_with_exchange());
+            side.variants.push_back(thermo::wall_with_exchange());
             sides.keys.push_back(std::move(side));
         }
     return sides;

@@ -1,10 +1,10 @@
 #include "studies/closed_vessel.hpp"
 
 #include "core/error.hpp"
-#include "matter/closed_gas.hpp"
-#include "matter/heat.hpp"
-#include "matter/substance.hpp"
 #include "scene/names.hpp"
+#include "thermo/closed_gas.hpp"
+#include "thermo/heat_keys.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -43,11 +43,11 @@ Key positive(const char* name, const char* doc, const char* unit) {
 }  // namespace
 
 std::vector<Key> ClosedVessel::keys() {
-    Key substance = matter::substance_key();
+    Key substance = thermo::substance_key();
     substance.doc += " Of this solver: \"water\".";
     return {
         substance,
-        {.name = "heat", .type = Type::table, .doc = "The surroundings.", .keys = {matter::pressure_key(), matter::ambient_key()}},
+        {.name = "heat", .type = Type::table, .doc = "The surroundings.", .keys = {thermo::pressure_key(), thermo::ambient_key()}},
         {.name = "vessel",
          .type = Type::table,
          .doc = "A rigid vessel that contains only water and its vapour.",
@@ -66,7 +66,7 @@ std::vector<Key> ClosedVessel::keys() {
 }
 
 ClosedVessel::ClosedVessel(const scene::Scene& scene)
-    : water_(matter::substance_of(scene)),
+    : water_(thermo::substance_of(scene)),
       ambient_(scene),
       volume_(scene.number("vessel.volume")),
       mass_(scene.number("vessel.mass")),
@@ -126,7 +126,7 @@ void ClosedVessel::find_temperature() {
     if (!(gas_volume(T_) > 0)) throw NumericalFailure("pressure", "the liquid has filled the vessel");
 }
 
-real ClosedVessel::pressure_of_gas() const { return matter::pressure_of_vapour(*water_, vapour_ / gas_volume(T_), T_); }
+real ClosedVessel::pressure_of_gas() const { return thermo::pressure_of_vapour(*water_, vapour_ / gas_volume(T_), T_); }
 
 /// Rate at which the gas approaches the saturation pressure at constant temperature [1/s].
 real ClosedVessel::fastest() const {

@@ -6,8 +6,8 @@
 #pragma once
 #include "core/passes.hpp"
 #include "core/solver.hpp"
-#include "matter/ambient.hpp"
 #include "scene/scene.hpp"
+#include "thermo/ambient.hpp"
 #include "thermo/substance.hpp"
 
 namespace weir::studies {
@@ -38,7 +38,7 @@ private:
     void show();
 
     thermo::SubstancePtr water_;
-    matter::Ambient ambient_;
+    thermo::Ambient ambient_;
     GridView grid_;
     real volume_, mass_, transfer_, exchange_;  // [m³], [kg], K [kg/(s Pa)], G [W/K]
     real vapour_ = 0, T_ = 0, U_ = 0, p_ = 0;   // [kg], [K], [J], [Pa]

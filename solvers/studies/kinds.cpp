@@ -2,13 +2,13 @@
 
 #include "mac/grid/initial.hpp"
 #include "mac/grid/kind.hpp"
-#include "matter/substance.hpp"
 #include "scene/surface_keys.hpp"
 #include "studies/closed_vessel.hpp"
 #include "studies/phase_diagram.hpp"
 #include "studies/poisson_problem.hpp"
 #include "studies/reconstruction_study.hpp"
 #include "studies/transport.hpp"
+#include "thermo/scene_substance.hpp"
 
 namespace weir::studies {
 
@@ -45,7 +45,7 @@ scene::SolverKind phase_diagram_kind() {
     schema.study = true;
     schema.doc = "A substance in the plane of temperature (x, in K) and pressure (y, its decimal logarithm, in Pa), without any flow.";
     schema.dims = {2};
-    schema.keys = {matter::substance_key(), PhaseDiagram::samples_key()};
+    schema.keys = {thermo::substance_key(), PhaseDiagram::samples_key()};
     schema.without = {"time.stop_when_steady", "grid.periodic", "time.cfl", "fluid", "sides", "liquid", "solids", "emitters", "initial"};
     return {schema, [](const scene::Scene& scene, const Partition&) { return std::make_unique<PhaseDiagram>(scene); }};
 }

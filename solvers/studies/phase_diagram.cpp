@@ -1,7 +1,7 @@
 #include "studies/phase_diagram.hpp"
 
 #include "core/error.hpp"
-#include "matter/substance.hpp"
+#include "thermo/scene_substance.hpp"
 
 namespace weir::studies {
 
@@ -39,7 +39,7 @@ scene::Key PhaseDiagram::samples_key() {
 }
 
 PhaseDiagram::PhaseDiagram(const scene::Scene& scene) {
-    const auto substance = matter::substance_of(scene);
+    const auto substance = thermo::substance_of(scene);
     const Index<2> cells = scene.index<2>("grid.cells");
     const Vec<2> origin = scene.vec<2>("grid.origin"), size = scene.vec<2>("grid.size");
     grid_ = {.dim = 2,

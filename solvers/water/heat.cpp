@@ -3,9 +3,9 @@
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
 #include "mac/grid/initial.hpp"
-#include "matter/heat.hpp"
-#include "matter/substance.hpp"
 #include "scene/names.hpp"
+#include "thermo/heat_keys.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include <algorithm>
 
@@ -20,13 +20,13 @@ std::vector<Key> LiquidHeat<D>::keys() {
     const auto none_or_more = [](const char* name, const char* unit, const char* doc) {
         return Key{.name = name, .type = Type::number, .doc = doc, .unit = unit, .fallback = 0.0, .min = 0};
     };
-    return matter::keys_on_a_grid(
+    return thermo::keys_on_a_grid(
         "the liquid carry heat, freeze and evaporate",
         {none_or_more("surface_exchange", "W/(m^2 K)", "Heat transfer coefficient between heat.ambient and the free surface."),
          none_or_more("evaporation", "kg/(m^2 s Pa)",
                       "Evaporation rate of the surface per pascal of saturation pressure above vapour_pressure. The liquid is removed with "
                       "its enthalpy and the heat of evaporation; the integrals record both."),
-         none_or_more("vapour_pressure", "Pa", "Pressure of the substance's vapour above the liquid."), matter::ClosedGas::key()},
+         none_or_more("vapour_pressure", "Pa", "Pressure of the substance's vapour above the liquid."), thermo::ClosedGas::key()},
         "the liquid's cells whose centres they cover; none where there is no liquid.");
 }
 
@@ -51,8 +51,8 @@ void refuse_open(const scene::Scene& scene, const MacState<D>& s) {
 
 template <int D>
 LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame<D>& frame, real volume)
-    : substance_(matter::substance_of(scene)),
-      melting_(matter::melting_of(scene, "mac_water")),
+    : substance_(thermo::substance_of(scene)),
+      melting_(thermo::melting_of(scene, "mac_water")),
       frame_(frame),
       drag_(scene.number("heat.drag")),
       exchange_(scene.number("heat.surface_exchange")),
@@ -85,7 +85,7 @@ LiquidHeat<D>::LiquidHeat(const scene::Scene& scene, MacState<D>& s, const Frame
     find_surface(s);
     mean_ = mean(s);
     note(s);
-    if (!matter::ClosedGas::named(scene)) return;
+    if (!thermo::ClosedGas::named(scene)) return;
     if (surface_cells_.empty()) scene.refuse("heat.enclosed_vapour", "the liquid has no surface");
     const auto open =
         static_cast<real>(std::count_if(s.cells.values().begin(), s.cells.values().end(), [](Cell cell) { return cell != Cell::solid; }));
@@ -209,7 +209,7 @@ real LiquidHeat<D>::evaporates(const MacState<D>& s, real area, real dt) {
     if (evaporation_ == 0 || surface_cells_.empty()) return 0;
     const real T = surface_temperature(), K = area * evaporation_;
     if (gas_) return gas_->evaporates(K, T, surface_capacity(s), dt) / s.rho;
-    return dt * K * (substance_->pressure(matter::line_to_vapour(*substance_, T), T) - vapour_pressure_) / s.rho;
+    return dt * K * (substance_->pressure(thermo::line_to_vapour(*substance_, T), T) - vapour_pressure_) / s.rho;
 }
 
 template <int D>
@@ -217,7 +217,7 @@ void LiquidHeat<D>::leaves(const MacState<D>& s, real lost, real volume) {
     if (surface_cells_.empty() || !(volume > lost)) return;
     const real T = surface_temperature(), h = melting_.enthalpy(T), m = s.rho * lost;
     const real taken =
-        gas_ ? gas_->take(m, melting_, T, volume - lost) : m * (h + substance_->latent_heat(matter::line_to_vapour(*substance_, T), T));
+        gas_ ? gas_->take(m, melting_, T, volume - lost) : m * (h + substance_->latent_heat(thermo::line_to_vapour(*substance_, T), T));
     evaporated_ += lost;
     vapour_heat_ += taken;
     pending_ += taken - m * h;
@@ -230,7 +230,7 @@ void LiquidHeat<D>::conduct(const MacState<D>& s, real volume, real area, real d
     if (cells_ == 0) return;
     keep_mean(s);
     if (supply_.ambient().pressure_changes()) {
-        melting_ = matter::melting_at(*substance_, supply_.ambient().pressure(s.time + dt));
+        melting_ = thermo::melting_at(*substance_, supply_.ambient().pressure(s.time + dt));
         conduction_.set_melting(melting_);
     }
     conduction_.set_density(s.rho * volume / (static_cast<real>(cells_) * frame_.cell_volume()));
@@ -267,7 +267,7 @@ real LiquidHeat<D>::max_dt(const MacState<D>& s, real area) const {
     if (exchange_ > 0) limit = std::min(limit, 0.5 * capacity / (exchange_ * area));
     if (evaporation_ > 0) {  // limits: a tenth of a cell, and one kelvin of the surface cells
         const real T = surface_temperature(), K = evaporation_ * area;
-        const auto line = matter::line_to_vapour(*substance_, T);
+        const auto line = thermo::line_to_vapour(*substance_, T);
         const real latent = substance_->latent_heat(line, T);
         const real most = std::min(0.1 * frame_.h_min() * s.rho * area, capacity / latent);  // [kg]
         if (gas_ && std::abs(gas_->evaporates(K, T, capacity, infinity)) <= most) return limit;

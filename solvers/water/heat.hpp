@@ -4,7 +4,7 @@
 // it is corrected afterwards in the cells where H has changed. Evaporating liquid removes its own enthalpy and the heat of evaporation,
 // which is taken from the surface cells:
 //     dm/dt = A e (p_sat(T) − p_v),   M' = M − dm,   M' H̄' = M H̄ − dm (H_s + L).
-// In an enclosed gas (matter/closed_gas.hpp), whose pressure is p_v, evaporation is at constant volume.
+// In an enclosed gas (thermo/closed_gas.hpp), whose pressure is p_v, evaporation is at constant volume.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/solver.hpp"
@@ -12,7 +12,7 @@
 #include "mac/heat/conduction.hpp"
 #include "mac/heat/heat_supply.hpp"
 #include "mac/heat/ice.hpp"
-#include "matter/closed_gas.hpp"
+#include "thermo/closed_gas.hpp"
 
 #include <optional>
 #include <vector>
@@ -62,7 +62,7 @@ private:
     real surface_capacity(const MacState<D>& s) const;
 
     thermo::SubstancePtr substance_;
-    matter::Melting melting_;
+    thermo::Melting melting_;
     Frame<D> frame_;
     real drag_, exchange_, evaporation_, vapour_pressure_;
     Conduction<D> conduction_;
@@ -75,7 +75,7 @@ private:
     real pending_ = 0;                                   // heat of evaporation not yet taken from the surface [J]
     real added_ = 0, evaporated_ = 0, vapour_heat_ = 0;  // since the start [J], [m^D], [J]
     real coldest_ = 0, hottest_ = 0;                     // of the liquid's cells [K]
-    std::optional<matter::ClosedGas> gas_;               // nullopt where the scene names none
+    std::optional<thermo::ClosedGas> gas_;               // nullopt where the scene names none
     Ice<D> ice_;
     bool any_ice_ = false;
 };

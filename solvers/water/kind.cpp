@@ -2,9 +2,9 @@
 #include "mac/grid/kind.hpp"
 #include "mac/grid/initial.hpp"
 #include "mac/grid/own_planes.hpp"
-#include "matter/heat.hpp"
 #include "scene/one_process.hpp"
 #include "scene/surface_keys.hpp"
+#include "thermo/heat_keys.hpp"
 #include "water/effects.hpp"
 #include "water/solver.hpp"
 
@@ -84,7 +84,7 @@ scene::SolverKind kind() {
     for (const char* axis : {"x", "y", "z"})
         for (const char* end : {"_min", "_max"}) {
             Key side{.name = std::string(axis) + end, .type = Type::table};
-            side.variants = {matter::wall_with_exchange()};
+            side.variants = {thermo::wall_with_exchange()};
             sides.keys.push_back(std::move(side));
         }
     schema.keys.push_back(std::move(sides));

@@ -1,11 +1,11 @@
 // What is true on every backend of particles that carry heat. A file that includes this says first, in namespace weir::test: `backend` (as
 // a scene names it), Sph<D> and Pbf<D> (types of solvers) and missing() (why this machine cannot run them; empty where it can).
 #pragma once
-#include "matter/substance.hpp"
 #include "pbf/reference_solver.hpp"
 #include "pbf/solver.hpp"
 #include "shared/needs_backend.hpp"
 #include "shared/sph_reference.hpp"
+#include "thermo/scene_substance.hpp"
 
 namespace weir::test {
 namespace {  // every file that includes this has its own
@@ -307,7 +307,7 @@ TEST_IN_2D_AND_3D("where the pressure of the surroundings falls, a liquid boils 
         const auto scene = test::heat_scene<D>(name, test::backend, place, scheme);
         typename decltype(here)::type solver(scene);
         typename decltype(there)::type reference(test::heat_scene<D>(name, "reference", place, scheme));
-        const auto substance = matter::substance_of(scene);
+        const auto substance = thermo::substance_of(scene);
         const auto boils = [&](real p) { return substance->temperature(thermo::Boundary::saturation, p); };
         const particles::Heat<D> heat(scene, solver.fluid().domain);
         const real warm = boils(60000), h = heat.start_enthalpy(warm);

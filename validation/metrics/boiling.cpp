@@ -1,6 +1,6 @@
 // Particles that boil by heat: at what temperature, and the gas that they become.
-#include "matter/ambient.hpp"
-#include "matter/substance.hpp"
+#include "thermo/ambient.hpp"
+#include "thermo/scene_substance.hpp"
 #include "thermo/substance.hpp"
 #include "validation/metrics/lists.hpp"
 #include "validation/metrics/needed_field.hpp"
@@ -85,7 +85,7 @@ real boiling_error(const FieldSet& fields, const scene::Scene& scene, real t) {
     const real level = count * g.spacing[1] / g.cells[0];
     const real weight = scene.number("fluid.density") * std::abs(scene.root().numbers("effects.gravity.g").at(1));
     const auto water = thermo::water();
-    const real pressure = matter::Ambient(scene).pressure(t);
+    const real pressure = thermo::Ambient(scene).pressure(t);
     real worst = 0;
     for (std::size_t i = 0; i < y.size(); ++i) {
         const real depth = std::max<real>(0, level - (y[i] - g.origin[1]));
@@ -116,8 +116,8 @@ Curve line_of(const thermo::Substance& substance, thermo::Boundary boundary, con
 /// Where the warmest particle of a run has been among the states of its substance.
 Panel path_in_diagram(const RunRecord& run, const Reference&) {
     Panel panel{.title = "The run among the states", .x = {"T [K]"}, .y = {"p [Pa]", true}};
-    const auto substance = matter::substance_of(*run.scene);
-    const matter::Ambient ambient(*run.scene);
+    const auto substance = thermo::substance_of(*run.scene);
+    const thermo::Ambient ambient(*run.scene);
     constexpr real below = 20, above = 160;  // the triple point, so much of the lines: water from 90 Pa to 0.7 MPa [K]
     if (const auto triple = substance->triple(); triple && substance->critical()) {
         panel.curves.push_back(line_of(*substance, thermo::Boundary::sublimation, "sublimation", triple->T - below, triple->T));

@@ -50,7 +50,7 @@ real max_of_rows(const Index<D>& extent, F&& f) {
 }  // namespace
 
 template <int D>
-Conduction<D>::Conduction(const matter::Melting& melting, const Extent<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature)
+Conduction<D>::Conduction(const thermo::Melting& melting, const Extent<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature)
     : melting_(melting),
       h_(h),
       rho_(rho),
@@ -109,7 +109,7 @@ bool Conduction<D>::is_liquid(const Grid<real, D>& H, const Given& given) const 
 /// Conductivity of cells, stored in T_[1], which is unused before the first stage; negative on the plateau.
 template <int D>
 void Conduction<D>::set_conductivities(const Grid<real, D>& H, const Given& given) {
-    const matter::Melting m = melting_;
+    const thermo::Melting m = melting_;
     const real per_heat = 1 / std::max(m.h_liquid - m.h_solid, std::numeric_limits<real>::min());
     fill_rows(T_[1], no_flux_, [&](const Index<D>& first, int count, real* k) {
         const real* at = &H(first);

@@ -11,9 +11,9 @@
 // a sum of positive parts up to five dimensions with 5/2, and only up to two with 1/2. The scheme is in flux form: heat is conserved.
 #pragma once
 #include "mac/grid/ghosts.hpp"
-#include "matter/melting.hpp"
 #include "parallel/grid.hpp"
 #include "poisson/poisson.hpp"
+#include "thermo/melting.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -25,9 +25,9 @@ class Conduction {
 public:
     Conduction() = default;
     /// `temperature`: the boundary conditions of the sides.
-    Conduction(const matter::Melting& melting, const Extent<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
+    Conduction(const thermo::Melting& melting, const Extent<D>& cells, const Vec<D>& h, real rho, const Boundary<D>& temperature);
     /// Sets another melting law: at another pressure, for instance.
-    void set_melting(const matter::Melting& melting) { melting_ = melting, known_ = false; }
+    void set_melting(const thermo::Melting& melting) { melting_ = melting, known_ = false; }
     /// Mass per volume of the fluid's cells, where it differs from the density [kg/m³].
     void set_density(real rho) { rho_ = rho; }
     /// Sets a side with heat transfer to the surroundings [W/(m² K)], in series with the half cell beside it.
@@ -85,7 +85,7 @@ private:
     void continue_around(Padded<D>& T) const;
     real through_sides(const Padded<D>& T, int plane) const;
 
-    matter::Melting melting_;
+    thermo::Melting melting_;
     Vec<D> h_{};
     real rho_ = 1, cell_volume_ = 0;
     Boundary<D> boundary_, no_flux_;

@@ -165,7 +165,7 @@ real Conduction<D>::through_sides(const Padded<D>& T, int plane) const {
 
 template <int D>
 void Conduction<D>::take_temperature(const Stage& stage, int plane) {
-    const matter::Melting m = melting_;
+    const thermo::Melting m = melting_;
     const real per_solid = 1 / m.c_solid, per_liquid = 1 / m.c_liquid;
     const int n = stage.H.extent()[0];
     for_each_row_of(stage.H.extent(), plane, [&](const Index<D>& first) {
@@ -195,7 +195,7 @@ void Conduction<D>::other_rates(const Stage& stage, const Index<D>& first, int c
 /// D_j and T of H + D_j; the last stage writes H.
 template <int D>
 void Conduction<D>::add_stage(const Stage& stage, int plane) {
-    const matter::Melting m = melting_;
+    const thermo::Melting m = melting_;
     const real per_solid = 1 / m.c_solid, per_liquid = 1 / m.c_liquid;
     const auto now = static_cast<std::size_t>(stage.number % 2);
     const Padded<D>& T = T_[1 - now];

@@ -1,8 +1,8 @@
 #include "mac/heat/heat_supply.hpp"
 
 #include "geometry/shape.hpp"
-#include "matter/heat.hpp"
 #include "scene/names.hpp"
+#include "thermo/heat_keys.hpp"
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ bool before(real t, real moment) { return t < moment * (1 - 1e-9); }
 }  // namespace
 
 template <int D>
-HeatSupply<D>::HeatSupply(const scene::Scene& scene, const MacState<D>& s, const matter::Melting& melting, Conduction<D>& conduction)
+HeatSupply<D>::HeatSupply(const scene::Scene& scene, const MacState<D>& s, const thermo::Melting& melting, Conduction<D>& conduction)
     : ambient_(scene) {
     for (int a = 0; a < D; ++a)
         for (int end = 0; end < 2; ++end) read_side(scene, s, melting, conduction, a, end);
@@ -29,13 +29,13 @@ HeatSupply<D>::HeatSupply(const scene::Scene& scene, const MacState<D>& s, const
 }
 
 template <int D>
-void HeatSupply<D>::read_side(const scene::Scene& scene, const MacState<D>& s, const matter::Melting& melting, Conduction<D>& conduction,
+void HeatSupply<D>::read_side(const scene::Scene& scene, const MacState<D>& s, const thermo::Melting& melting, Conduction<D>& conduction,
                               int a, int end) {
     const auto& side = s.sides.side(a, end);
     const std::string path = side_path(a, end);
     if (side.temperature) {
         const real T = *side.temperature;
-        matter::check_temperature(scene, path + ".temperature", T);
+        thermo::check_temperature(scene, path + ".temperature", T);
         if (melting.enthalpy(T) > melting.boils_above)
             scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils",
                          "solver \"" + scene.text("solver") + "\" has no vapour");
@@ -54,7 +54,7 @@ void HeatSupply<D>::read_side(const scene::Scene& scene, const MacState<D>& s, c
 
 template <int D>
 void HeatSupply<D>::read_heater(const scene::Scene& scene, const MacState<D>& s, std::size_t i) {
-    matter::check_heater(scene, i);
+    thermo::check_heater(scene, i);
     const auto& table = scene.root().tables("heaters")[i];
     Heater heater{table.number("start"), table.number_or("end", infinity), table.number("power"), {}};
     const auto shape = geometry::make_shape<D>(table);
@@ -72,7 +72,7 @@ void HeatSupply<D>::refuse_heaters_without_fluid(const scene::Scene& scene, cons
 }
 
 template <int D>
-void HeatSupply<D>::follow(std::shared_ptr<BrushForcing> forcing, const matter::Melting& melting, const Grid<real, D>& enthalpy) {
+void HeatSupply<D>::follow(std::shared_ptr<BrushForcing> forcing, const thermo::Melting& melting, const Grid<real, D>& enthalpy) {
     brush_forcing_ = std::move(forcing), melting_ = &melting, enthalpy_ = &enthalpy;
     if (source_.empty()) source_ = Grid<real, D>(enthalpy.extent());
 }

@@ -5,11 +5,11 @@
 #pragma once
 #include "core/checkpoint.hpp"
 #include "core/solver.hpp"
-#include "matter/ambient.hpp"
 #include "particles/heat/vapour.hpp"
 #include "particles/state/fluid.hpp"
 #include "particles/state/scheme.hpp"
 #include "particles/threads/passes.hpp"
+#include "thermo/ambient.hpp"
 #include "thermo/heat_curve.hpp"
 #include "thermo/substance.hpp"
 
@@ -166,7 +166,7 @@ private:
     int frozen_ = 0;  // particles
     std::vector<Heater> heaters_;
     std::vector<Flux> fluxes_;
-    matter::Ambient ambient_;
+    thermo::Ambient ambient_;
     std::vector<Exchange> exchanges_;
     std::unique_ptr<Vapour<D>> vapour_;
     real added_ = 0;                                               // [J]; in 2D per metre of depth

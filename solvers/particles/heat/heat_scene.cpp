@@ -1,12 +1,12 @@
 // Heat settings of a scene with particles: the substance, heat from sides and heaters, initial temperatures.
 #include "core/error.hpp"
 #include "geometry/shape.hpp"
-#include "matter/ambient.hpp"
-#include "matter/heat.hpp"
-#include "matter/substance.hpp"
 #include "particles/heat/heat.hpp"
 #include "scene/formula.hpp"
 #include "scene/names.hpp"
+#include "thermo/ambient.hpp"
+#include "thermo/heat_keys.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -43,9 +43,9 @@ void check_density(const scene::Scene& scene, const thermo::Substance& substance
 
 /// At the lowest pressure of the scene: under higher pressure the boiling enthalpy is larger (Vapour).
 thermo::HeatCurve liquid_curve(const scene::Scene& scene, const thermo::Substance& substance) {
-    const matter::Ambient ambient(scene);
+    const thermo::Ambient ambient(scene);
     const std::string path = ambient.pressure_changes() ? "heat.ambient.keyframes" : "heat.pressure";
-    const auto curve = matter::curve_at(ambient.lowest_pressure(), path, scene, substance);
+    const auto curve = thermo::curve_at(ambient.lowest_pressure(), path, scene, substance);
     if (!has_liquid(curve))
         scene.refuse(substance.has(thermo::Boundary::saturation) ? path : "substance",
                      "at " + scene::number_text(ambient.lowest_pressure()) + " Pa " + substance.name() + " is never a liquid",
@@ -93,14 +93,14 @@ std::vector<Key> heat_keys() {
     Key sides{.name = "sides", .type = Type::table};
     for (const char* axis : {"x", "y", "z"})
         for (const char* end : {"_min", "_max"})
-            sides.keys.push_back({.name = std::string(axis) + end, .type = Type::table, .variants = {matter::wall_with_exchange()}});
-    return {matter::substance_key_of_heat("Naming it lets particles carry heat, melt and freeze; `fluid.density` is that of the liquid, "
+            sides.keys.push_back({.name = std::string(axis) + end, .type = Type::table, .variants = {thermo::wall_with_exchange()}});
+    return {thermo::substance_key_of_heat("Naming it lets particles carry heat, melt and freeze; `fluid.density` is that of the liquid, "
                                           "and of the solid unless `heat.frozen` is \"free\"."),
             {.name = "heat",
              .type = Type::table,
              .doc = "Heat transfer of a substance. Requires `substance`.",
-             .keys = {matter::pressure_key(), matter::ambient_key_of_particles(), frozen_key(), vapour_key()}},
-            matter::heaters_key("Heat sources, distributed uniformly over the particles inside; without particles inside they add nothing. "
+             .keys = {thermo::pressure_key(), thermo::ambient_key_of_particles(), frozen_key(), vapour_key()}},
+            thermo::heaters_key("Heat sources, distributed uniformly over the particles inside; without particles inside they add nothing. "
                                 "Requires `substance`."),
             sides};
 }
@@ -125,8 +125,8 @@ real emitted_enthalpy(const scene::Scene& scene, std::size_t i) {
     const auto& table = scene.root().tables("emitters")[i];
     if (!table.has("temperature")) scene.refuse(path, "an emitter of particles with heat requires a temperature");
     const real T = table.number("temperature");
-    matter::check_temperature(scene, path + ".temperature", T);
-    const auto curve = liquid_curve(scene, *matter::substance_of(scene));
+    thermo::check_temperature(scene, path + ".temperature", T);
+    const auto curve = liquid_curve(scene, *thermo::substance_of(scene));
     const real h = curve.enthalpy(T);
     if (h > heat_states(curve, {}).liquid_end)
         scene.refuse(path + ".temperature", "at " + scene::number_text(T) + " K the liquid boils", "an emitter adds liquid");
@@ -135,13 +135,13 @@ real emitted_enthalpy(const scene::Scene& scene, std::size_t i) {
 
 template <int D>
 Heat<D>::Heat(const scene::Scene& scene, const Domain<D>& domain)
-    : curve_(liquid_curve(scene, *matter::substance_of(scene))),
+    : curve_(liquid_curve(scene, *thermo::substance_of(scene))),
       lo_(domain.lo),
       hi_(domain.hi),
       spacing_(domain.spacing),
       rho0_(scene.number("fluid.density")),
       ambient_(scene) {
-    const auto substance = matter::substance_of(scene);
+    const auto substance = thermo::substance_of(scene);
     std::array<real, 3> k{};
     for (int i = 0; i < curve_.states(); ++i)
         if (curve_.state(i) != State::supercritical)
@@ -196,8 +196,8 @@ void Heat<D>::set_ice(const scene::Scene& scene, const Domain<D>& domain, const 
 template <int D>
 std::function<bool(const Vec<D>&)> frozen_at_start(const scene::Scene& scene) {
     if (!scene.has("initial.temperature.name")) return [](const Vec<D>&) { return false; };
-    return [value = temperature_function<D>(scene), curve = liquid_curve(scene, *matter::substance_of(scene)),
-            states = heat_states(liquid_curve(scene, *matter::substance_of(scene)), {0, 0, 0})](const Vec<D>& x) {
+    return [value = temperature_function<D>(scene), curve = liquid_curve(scene, *thermo::substance_of(scene)),
+            states = heat_states(liquid_curve(scene, *thermo::substance_of(scene)), {0, 0, 0})](const Vec<D>& x) {
         const real T = value(x);
         return T > 0 && heat_melted(curve.enthalpy(T), &states) < 0.5;
     };
@@ -247,7 +247,7 @@ void Heat<D>::read_sides(const scene::Scene& scene, const Domain<D>& domain) {
                 if (T) (end ? w.hi_theta : w.lo_theta)[a] = static_cast<Number>(theta_of_wall(*T));
             };
             if (T) {
-                matter::check_temperature(scene, path + ".temperature", *T);
+                thermo::check_temperature(scene, path + ".temperature", *T);
                 if (!vapour_ && boils_at_start(*T))
                     scene.refuse(path + ".temperature", "at " + scene::number_text(*T) + " K the liquid boils",
                                  "add heat.vapour to let it boil");
@@ -288,7 +288,7 @@ template <int D>
 void Heat<D>::read_heaters(const scene::Scene& scene, const Domain<D>& domain) {
     const auto& tables = scene.root().tables("heaters");
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        matter::check_heater(scene, i);
+        thermo::check_heater(scene, i);
         const std::string path = "heaters[" + std::to_string(i) + "]";
         Heater heater{geometry::make_shape<D>(tables[i]), tables[i].number("start"), tables[i].number_or("end", infinity),
                       tables[i].number("power")};

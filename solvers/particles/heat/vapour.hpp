@@ -4,8 +4,8 @@
 //     p = p(t) + rho0 g d,   d: liquid volume above the particle over area, in its column of four spacings across
 // that is the weight above it, of liquid or vapour, and the depth below the surface for a liquid at rest.
 #pragma once
-#include "matter/ambient.hpp"
 #include "particles/state/fluid.hpp"
+#include "thermo/ambient.hpp"
 #include "thermo/substance.hpp"
 
 #include <string>
@@ -60,7 +60,7 @@ private:
     void set_shifts(real pressure);
 
     VapourParams params_{};
-    matter::Ambient ambient_;
+    thermo::Ambient ambient_;
     thermo::SubstancePtr substance_;
     real per_c_ = 0;                 // of the liquid [kg K/J]
     real weight_ = 0, deepest_ = 0;  // rho0 g [Pa/m]; the height of the domain [m]

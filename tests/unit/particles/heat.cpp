@@ -1,10 +1,10 @@
 // What enthalpy means to particles, and the sums over a lattice by which conduction is divided.
 #include "particles/heat/heat.hpp"
-#include "matter/substance.hpp"
 #include "particles/state/flow.hpp"
 #include "sph/reference_solver.hpp"
 #include "sph/solver.hpp"
 #include "support/test.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include <fmt/format.h>
 

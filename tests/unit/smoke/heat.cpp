@@ -181,7 +181,7 @@ TEST("a liquid is lighter than where it melts by the integral of its expansion, 
     };
     std::string expanding = wax;
     expanding.replace(expanding.find("conductivity = 0.6"), 18, "conductivity = 0.6, expansion = 2e-4");
-    const matter::Lightness light(scene(expanding)), water(scene("substance = \"water\"\n"));
+    const thermo::Lightness light(scene(expanding)), water(scene("substance = \"water\"\n"));
     for (const real T : {250.0, 300.0, 303.7, 340.0}) EXPECT_NEAR(light(T), 2e-4 * std::max(T - 300, 0.0), 1e-15) << T;
     // Water is heaviest at 277.13 K, by 1.3e-4 (IAPWS; the formula of its saturated liquid has 277.1 K).
     EXPECT_LT(water(277.13), -1.2e-4);
@@ -194,11 +194,11 @@ TEST("a liquid is lighter than where it melts by the integral of its expansion, 
 // β = −d ln ρ/dT, so that its integral is the logarithm of a ratio of densities. Simpson's rule errs by h⁴ β‴/2880 per step of a sixth of a
 // kelvin, 1e-9 at most in all; linear interpolation between table entries errs by h² β′/8, 6e-8.
 TEST("the lightness of water is the logarithm of the ratio of its densities at melting and now") {
-    const matter::Lightness water(
+    const thermo::Lightness water(
         test::mac_scene("solver = \"mac\"\ndim = 2\ngrid = { cells = [4, 4], size = [1.0, 1.0] }\ntime = { end = 1.0 }\n"
                         "fluid = { density = 1000.0 }\nsubstance = \"water\"\n"));
     const auto density = [](real T) { return thermo::water()->colder_density(thermo::Boundary::saturation, T); };
-    const real melts = matter::melting_at(*thermo::water(), 101325).T, begins = thermo::water()->triple()->T;
+    const real melts = thermo::melting_at(*thermo::water(), 101325).T, begins = thermo::water()->triple()->T;
     const real below = thermo::water()->expansion(begins) * (begins - melts);  // as at the triple point, 0.01 K warmer
     for (const real T : {275.0, 277.0, 285.0, 300.0, 330.0, 372.0})
         EXPECT_NEAR(water(T), below + std::log(density(begins) / density(T)), 3e-7) << T;
@@ -224,7 +224,7 @@ TEST_IN_2D_AND_3D("melt that is warmer rises, and ice does not") {
 
 TEST_IN_2D_AND_3D("a warm cell warms its neighbours and no cell leaves the range of temperatures, whatever the step") {
     set_threads(1);
-    const matter::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
+    const thermo::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
     const Extent<D> n(Index<D>::constant(17));
     const Grid<poisson::Cell, D> cells(n, poisson::Cell::fluid);
     const Grid<real, D> none;
@@ -242,7 +242,7 @@ TEST_IN_2D_AND_3D("a warm cell warms its neighbours and no cell leaves the range
 
 TEST("a step of many stages has an eighth of z^2 for its error, z = -(pi/L)^2 alpha dt") {
     set_threads(1);
-    const matter::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
+    const thermo::Melting m{.T = 100, .h_liquid = 10, .c_solid = 1, .c_liquid = 1, .k_solid = 1, .k_liquid = 1};
     const Extent<2> n(Index<2>{64, 1});
     const Grid<poisson::Cell, 2> cells(n, poisson::Cell::fluid);
     const Grid<real, 2> none;
@@ -262,7 +262,7 @@ namespace {
 
 /// A step of conduction in `stages` stages as the formula has it, cell by cell, in a box without solids.
 template <int D>
-void plain_conduction(const matter::Melting& m, const Vec<D>& h, real rho, const mac::Boundary<D>& boundary,
+void plain_conduction(const thermo::Melting& m, const Vec<D>& h, real rho, const mac::Boundary<D>& boundary,
                       const Grid<poisson::Cell, D>& cells, const Grid<real, D>& source, real dt, int stages, Grid<real, D>& H) {
     using Kind = mac::EndRule::Kind;
     const Extent<D> n = H.extent();
@@ -313,7 +313,7 @@ void plain_conduction(const matter::Melting& m, const Vec<D>& h, real rho, const
 
 TEST_IN_2D_AND_3D("conduction in passes of several stages, by rows and by planes, is the formula's cell by cell") {
     using Kind = mac::EndRule::Kind;
-    const matter::Melting m{.T = 300, .h_liquid = 3000, .c_solid = 2, .c_liquid = 4, .k_solid = 2.2, .k_liquid = 0.6};
+    const thermo::Melting m{.T = 300, .h_liquid = 3000, .c_solid = 2, .c_liquid = 4, .k_solid = 2.2, .k_liquid = 0.6};
     Extent<D> n(Index<D>::constant(5));
     n[0] = 150, n[D - 1] = 31;  // more than a block of a row; slabs of planes for two threads
     Vec<D> h = Vec<D>::constant(1);

@@ -1,6 +1,6 @@
 // Heat in a liquid with a free surface: conduction in a still pool, freezing at a wall, evaporation, and the balance of it all in a splash.
-#include "matter/closed_gas.hpp"
 #include "support.hpp"
+#include "thermo/closed_gas.hpp"
 #include "thermo/substance.hpp"
 
 #include <algorithm>
@@ -185,8 +185,8 @@ TEST("evaporation into a closed gas over a long step reaches the saturation pres
                             fmt::format("liquid = [ {{ shape = \"box\", min = [0.0, 0.0], max = [0.1, 0.05] }} ]\nfluid = {{ density = "
                                         "1000.0 }}\nsubstance = \"water\"\nheat = {{ evaporation = 1e-5, enclosed_vapour = {:.17g} }}\n",
                                         full * (1 - lacks)));
-            const auto melting = matter::melting_at(*substance, 101325);
-            matter::ClosedGas gas(scene, substance, melting, space, liquid, T);
+            const auto melting = thermo::melting_at(*substance, 101325);
+            thermo::ClosedGas gas(scene, substance, melting, space, liquid, T);
             const real p_sat = substance->pressure(line, T), before = p_sat - gas.pressure();
             ASSERT_NEAR(before / p_sat, lacks, 0.1 * lacks);
             const real m = gas.evaporates(1.0, T, capacity, 1e9);
@@ -201,8 +201,8 @@ TEST("evaporation into a closed gas over a long step reaches the saturation pres
 // evaporation 2256.5. The substance's tables have four digits; the work of expansion is 8% of it.
 TEST("the energy of vapour is without the work of expansion") {
     const real T = 373.15;
-    const auto melting = matter::melting_at(*thermo::water(), 101325);
-    EXPECT_NEAR(matter::energy_of_vapour(*thermo::water(), melting, T) - melting.enthalpy(T), 2086.9e3, 2e3);
+    const auto melting = thermo::melting_at(*thermo::water(), 101325);
+    EXPECT_NEAR(thermo::energy_of_vapour(*thermo::water(), melting, T) - melting.enthalpy(T), 2086.9e3, 2e3);
 }
 
 // In free fall every cell keeps its temperature: a linear field falls as the drop does, and linear interpolation carries it exactly. The

@@ -1,11 +1,11 @@
-#include "matter/heat.hpp"
+#include "thermo/heat_keys.hpp"
 
 #include "core/error.hpp"
-#include "matter/ambient.hpp"
-#include "matter/substance.hpp"
 #include "scene/names.hpp"
+#include "thermo/ambient.hpp"
+#include "thermo/scene_substance.hpp"
 
-namespace weir::matter {
+namespace weir::thermo {
 
 using scene::Key;
 using scene::Type;
@@ -69,11 +69,11 @@ scene::Variant wall_with_exchange() {
               .min_open = true}}};
 }
 
-thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance) {
+HeatCurve curve_of(const scene::Scene& scene, const Substance& substance) {
     return curve_at(scene.number("heat.pressure"), "heat.pressure", scene, substance);
 }
 
-thermo::HeatCurve curve_at(real pressure, const std::string& path, const scene::Scene& scene, const thermo::Substance& substance) {
+HeatCurve curve_at(real pressure, const std::string& path, const scene::Scene& scene, const Substance& substance) {
     try {
         return substance.heat_curve(pressure);
     } catch (const BadInput& error) {
@@ -91,4 +91,4 @@ void check_heater(const scene::Scene& scene, std::size_t i) {
     if (!(table.number_or("end", infinity) > table.number("start"))) scene.refuse(path + ".end", path + ".end must be after its start");
 }
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

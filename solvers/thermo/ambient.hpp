@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace weir::matter {
+namespace weir::thermo {
 
 /// The key "ambient" of the table "heat".
 scene::Key ambient_key();
@@ -36,4 +36,4 @@ private:
     std::vector<Frame> temperature_, pressure_;
 };
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

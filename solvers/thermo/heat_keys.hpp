@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace weir::matter {
+namespace weir::thermo {
 
 /// The optional key "substance" of a solver with heat; `doc` is appended to its description.
 scene::Key substance_key_of_heat(const std::string& doc);
@@ -21,12 +21,12 @@ std::vector<scene::Key> keys_on_a_grid(const std::string& lets, std::vector<scen
 scene::Variant wall_with_exchange();
 
 /// Enthalpy and temperature at the scene's heat.pressure; throws BadScene where the substance is not known at that pressure.
-thermo::HeatCurve curve_of(const scene::Scene& scene, const thermo::Substance& substance);
+HeatCurve curve_of(const scene::Scene& scene, const Substance& substance);
 /// At another pressure, given by the key `path` of the scene.
-thermo::HeatCurve curve_at(real pressure, const std::string& path, const scene::Scene& scene, const thermo::Substance& substance);
+HeatCurve curve_at(real pressure, const std::string& path, const scene::Scene& scene, const Substance& substance);
 /// Rejects a temperature of 0 K and below, at its key.
 void check_temperature(const scene::Scene& scene, const std::string& path, real T);
 /// Rejects a heater, scene.heaters[i], that ends before it starts.
 void check_heater(const scene::Scene& scene, std::size_t i);
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

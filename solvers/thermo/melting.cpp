@@ -1,17 +1,16 @@
-#include "matter/melting.hpp"
+#include "thermo/melting.hpp"
 
 #include "core/error.hpp"
-#include "matter/heat.hpp"
-#include "matter/substance.hpp"
 #include "scene/names.hpp"
+#include "thermo/heat_keys.hpp"
+#include "thermo/scene_substance.hpp"
 
-namespace weir::matter {
+namespace weir::thermo {
 
 namespace {
 
-void refuse_density(const scene::Scene& scene, const thermo::Substance& substance, real melts) {
-    const real ice = substance.colder_density(thermo::Boundary::melting, melts),
-               melt = substance.warmer_density(thermo::Boundary::melting, melts);
+void refuse_density(const scene::Scene& scene, const Substance& substance, real melts) {
+    const real ice = substance.colder_density(Boundary::melting, melts), melt = substance.warmer_density(Boundary::melting, melts);
     const real rho = scene.number("fluid.density");
     if (rho >= 0.9 * std::min(ice, melt) && rho <= 1.1 * std::max(ice, melt)) return;
     scene.refuse(
@@ -23,15 +22,15 @@ void refuse_density(const scene::Scene& scene, const thermo::Substance& substanc
 
 }  // namespace
 
-Melting melting_at(const thermo::Substance& substance, real pressure) {
+Melting melting_at(const Substance& substance, real pressure) {
     const auto curve = substance.heat_curve(pressure);
-    if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
+    if (curve.state(0) != State::solid || curve.states() < 2 || curve.state(1) != State::liquid)
         throw BadInput("at " + scene::number_text(pressure) + " Pa " + substance.name() + " is never a liquid that freezes");
     Melting m;
     m.T = curve.begins_at(1), m.h_solid = curve.highest(0), m.h_liquid = curve.lowest(1);
     m.c_solid = curve.heat_capacity(0), m.c_liquid = curve.heat_capacity(1);
-    m.k_solid = substance.conduction(thermo::State::solid).conductivity;
-    m.k_liquid = substance.conduction(thermo::State::liquid).conductivity;
+    m.k_solid = substance.conduction(State::solid).conductivity;
+    m.k_liquid = substance.conduction(State::liquid).conductivity;
     if (curve.states() > 2) m.boils_above = curve.highest(1);
     return m;
 }
@@ -39,7 +38,7 @@ Melting melting_at(const thermo::Substance& substance, real pressure) {
 Melting melting_of(const scene::Scene& scene, const std::string& solver) {
     const auto substance = substance_of(scene);
     const auto curve = curve_of(scene, *substance);
-    if (curve.state(0) != thermo::State::solid || curve.states() < 2 || curve.state(1) != thermo::State::liquid)
+    if (curve.state(0) != State::solid || curve.states() < 2 || curve.state(1) != State::liquid)
         scene.refuse(
             "heat.pressure",
             "at " + scene::number_text(scene.number("heat.pressure")) + " Pa " + substance->name() + " is never a liquid that freezes",
@@ -63,4 +62,4 @@ Lightness::Lightness(const scene::Scene& scene) {
     }
 }
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

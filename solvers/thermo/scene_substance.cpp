@@ -1,8 +1,8 @@
-#include "matter/substance.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include "core/error.hpp"
 
-namespace weir::matter {
+namespace weir::thermo {
 
 namespace {
 
@@ -32,17 +32,17 @@ Key state(const char* name, std::vector<Key> keys) {
 
 Key density() { return positive("density", "Density.", "kg/m^3"); }
 
-Key gas_constant() { return positive("gas_constant", "R of p = rho R T: 8.314 J/(mol K) over the molar mass.", "J/(kg K)"); }
+Key gas_constant_key() { return positive("gas_constant", "R of p = rho R T: 8.314 J/(mol K) over the molar mass.", "J/(kg K)"); }
 
-thermo::Conduction conduction(const scene::Table& table) { return {table.number("heat_capacity"), table.number("conductivity")}; }
+Conduction conduction(const scene::Table& table) { return {table.number("heat_capacity"), table.number("conductivity")}; }
 
-thermo::Point point_of(const scene::Table& table, const char* key) {
+Point point_of(const scene::Table& table, const char* key) {
     const auto& pair = table.numbers(key);
     return {pair[0], pair[1]};
 }
 
-thermo::Constants constants_of(const scene::Table& table) {
-    thermo::Constants k;
+Constants constants_of(const scene::Table& table) {
+    Constants k;
     k.triple = point_of(table, "triple"), k.critical = point_of(table, "critical");
     k.fusion = table.number("fusion"), k.vaporisation = table.number("vaporisation");
     k.solid_density = table.number("solid.density"), k.liquid_density = table.number("liquid.density");
@@ -69,30 +69,30 @@ Key substance_key() {
          {point("triple", "Triple point: temperature and pressure."), point("critical", "Critical point: temperature and pressure."),
           fusion, positive("vaporisation", "Latent heat of boiling.", "J/kg"), state("solid", {density(), heat_capacity(), conductivity()}),
           state("liquid", {density(), heat_capacity(), conductivity(), expansion}), state("vapour", {heat_capacity(), conductivity()})}},
-        {"ideal_gas", "Ideal gas, p = rho R T, without other phases.", {gas_constant(), heat_capacity(), conductivity()}},
+        {"ideal_gas", "Ideal gas, p = rho R T, without other phases.", {gas_constant_key(), heat_capacity(), conductivity()}},
         {"van_der_waals",
          "Van der Waals fluid, which boils according to Maxwell's equal-area rule and does not freeze.",
-         {gas_constant(), point("critical", "The critical temperature and pressure."), state("liquid", {heat_capacity(), conductivity()}),
-          state("vapour", {heat_capacity(), conductivity()})}}};
+         {gas_constant_key(), point("critical", "The critical temperature and pressure."),
+          state("liquid", {heat_capacity(), conductivity()}), state("vapour", {heat_capacity(), conductivity()})}}};
     return key;
 }
 
-thermo::SubstancePtr substance_of(const scene::Scene& scene) {
+SubstancePtr substance_of(const scene::Scene& scene) {
     const scene::Table& table = scene.root().table("substance");
     const std::string& name = table.text("name");
-    if (name == "water") return thermo::water();
-    if (name == "ideal_gas") return thermo::ideal_gas(table.number("gas_constant"), conduction(table));
+    if (name == "water") return water();
+    if (name == "ideal_gas") return ideal_gas(table.number("gas_constant"), conduction(table));
     if (name == "van_der_waals")
-        return thermo::van_der_waals(table.number("gas_constant"), point_of(table, "critical"), conduction(table.table("liquid")),
-                                     conduction(table.table("vapour")));
+        return van_der_waals(table.number("gas_constant"), point_of(table, "critical"), conduction(table.table("liquid")),
+                             conduction(table.table("vapour")));
     const auto constants = constants_of(table);
     std::vector<scene::Problem> problems;
-    for (const auto& fault : thermo::faults(constants)) {
+    for (const auto& fault : faults(constants)) {
         const std::string path = "substance." + fault.constant;
         problems.push_back(scene.problem(path, path + " " + fault.message));
     }
     if (!problems.empty()) scene.refuse(std::move(problems));
-    return thermo::of_constants(constants);
+    return of_constants(constants);
 }
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

@@ -5,15 +5,15 @@
 
 #include <string>
 
-namespace weir::matter {
+namespace weir::thermo {
 
 /// The key "substance": "water", or a table with constants or the parameters of an equation of state.
 scene::Key substance_key();
 
 /// The substance of a scene whose solver has the key. Rejects invalid constants, at their key.
-thermo::SubstancePtr substance_of(const scene::Scene& scene);
+SubstancePtr substance_of(const scene::Scene& scene);
 
 /// The properties of a substance: its points, phase boundaries and constants.
-std::string describe(const thermo::Substance& substance);
+std::string describe(const Substance& substance);
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

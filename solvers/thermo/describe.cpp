@@ -1,15 +1,13 @@
 // A substance as text for users: weir describe substance NAME.
-#include "matter/substance.hpp"
+#include "thermo/scene_substance.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace weir::matter {
+namespace weir::thermo {
 
 namespace {
-
-using namespace thermo;
 
 constexpr real usual_pressure = 101325;  // [Pa]
 
@@ -66,4 +64,4 @@ std::string describe(const Substance& substance) {
     return out;
 }
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

@@ -3,22 +3,22 @@
 //     dm/dt = K (p_sat(T) − p),    K = A e [kg/(s Pa)].
 // At constant volume, evaporation takes u_v − u_l = L − p (1/ρ_v − 1/ρ_l): less than L, since there is no work of expansion.
 #pragma once
-#include "matter/melting.hpp"
 #include "scene/scene.hpp"
+#include "thermo/melting.hpp"
 #include "thermo/substance.hpp"
 
 #include <array>
 
-namespace weir::matter {
+namespace weir::thermo {
 
 /// Pressure of vapour of this density [Pa]; below the critical pressure.
-real pressure_of_vapour(const thermo::Substance& substance, real density, real T);
+real pressure_of_vapour(const Substance& substance, real density, real T);
 
 /// The line on which vapour is in equilibrium with matter of temperature T.
-thermo::Boundary line_to_vapour(const thermo::Substance& substance, real T);
+Boundary line_to_vapour(const Substance& substance, real T);
 
 /// Energy of vapour in equilibrium at T, where the condensed phase has the enthalpy of `melting` [J/kg].
-real energy_of_vapour(const thermo::Substance& substance, const Melting& melting, real T);
+real energy_of_vapour(const Substance& substance, const Melting& melting, real T);
 
 class ClosedGas {
 public:
@@ -26,7 +26,7 @@ public:
     /// The key "enclosed_vapour" of the table "heat".
     static scene::Key key();
     /// A gas that shares `space` [m^D] with `liquid`, at the temperature of the surface. Rejects contradictory keys of a scene.
-    ClosedGas(const scene::Scene& scene, thermo::SubstancePtr substance, const Melting& melting, real space, real liquid, real T);
+    ClosedGas(const scene::Scene& scene, SubstancePtr substance, const Melting& melting, real space, real liquid, real T);
 
     /// Mass that evaporates in dt from a surface with heat capacity `capacity` [J/K], which supplies the heat of evaporation [kg]. The
     /// pressures approach each other exponentially, with the rate of the linearized equations, so any step is stable.
@@ -43,8 +43,8 @@ public:
 private:
     void fill(real T, real liquid);
 
-    thermo::SubstancePtr substance_;
+    SubstancePtr substance_;
     real space_, mass_, energy_ = 0, volume_ = 0, p_ = 0;
 };
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

@@ -9,7 +9,7 @@
 #include <array>
 #include <string>
 
-namespace weir::matter {
+namespace weir::thermo {
 
 struct Melting {
     real T = 0;                      // of melting [K]
@@ -34,7 +34,7 @@ struct Melting {
 Melting melting_of(const scene::Scene& scene, const std::string& solver);
 
 /// At another pressure. Throws BadInput where there is no melting at it.
-Melting melting_at(const thermo::Substance& substance, real pressure);
+Melting melting_at(const Substance& substance, real pressure);
 
 /// Relative density difference of a liquid to its melting point: the integral of the coefficient of thermal expansion over temperature, the
 /// factor of gravity in the Boussinesq approximation. Zero in a solid.
@@ -53,4 +53,4 @@ private:
     std::array<real, steps + 1> value_{};
 };
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

@@ -1,4 +1,4 @@
-#include "matter/closed_gas.hpp"
+#include "thermo/closed_gas.hpp"
 
 #include "core/error.hpp"
 #include "scene/names.hpp"
@@ -7,12 +7,10 @@
 #include <cmath>
 #include <utility>
 
-namespace weir::matter {
-
-using thermo::State;
+namespace weir::thermo {
 
 /// Fixed-point iteration p ← p ρ/ρ(T, p), a contraction.
-real pressure_of_vapour(const thermo::Substance& substance, real density, real T) {
+real pressure_of_vapour(const Substance& substance, real density, real T) {
     if (density <= 0) return 0;
     const real most = 0.999 * substance.critical()->p;
     const real thin = 1e-3 * substance.triple()->p;  // where it is an ideal gas
@@ -24,11 +22,11 @@ real pressure_of_vapour(const thermo::Substance& substance, real density, real T
     return p;
 }
 
-thermo::Boundary line_to_vapour(const thermo::Substance& substance, real T) {
-    return T < substance.triple()->T ? thermo::Boundary::sublimation : thermo::Boundary::saturation;
+Boundary line_to_vapour(const Substance& substance, real T) {
+    return T < substance.triple()->T ? Boundary::sublimation : Boundary::saturation;
 }
 
-real energy_of_vapour(const thermo::Substance& substance, const Melting& melting, real T) {
+real energy_of_vapour(const Substance& substance, const Melting& melting, real T) {
     const auto line = line_to_vapour(substance, T);
     const real expands = 1 / substance.warmer_density(line, T) - 1 / substance.colder_density(line, T);
     return melting.enthalpy(T) + substance.latent_heat(line, T) - substance.pressure(line, T) * expands;
@@ -44,7 +42,7 @@ scene::Key ClosedGas::key() {
             .min = 0};
 }
 
-ClosedGas::ClosedGas(const scene::Scene& scene, thermo::SubstancePtr substance, const Melting& melting, real space, real liquid, real T)
+ClosedGas::ClosedGas(const scene::Scene& scene, SubstancePtr substance, const Melting& melting, real space, real liquid, real T)
     : substance_(std::move(substance)), space_(space), mass_(scene.number("heat.enclosed_vapour")) {
     if (!(scene.number("heat.evaporation") > 0))
         scene.refuse("heat.enclosed_vapour", "the vapour is enclosed, but evaporation and condensation are off",
@@ -80,4 +78,4 @@ real ClosedGas::take(real mass, const Melting& melting, real T, real liquid) {
     return energy - std::exchange(energy_, energy);
 }
 
-}  // namespace weir::matter
+}  // namespace weir::thermo

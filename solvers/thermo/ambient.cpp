@@ -1,10 +1,10 @@
-#include "matter/ambient.hpp"
+#include "thermo/ambient.hpp"
 
 #include "scene/names.hpp"
 
 #include <algorithm>
 
-namespace weir::matter {
+namespace weir::thermo {
 
 using scene::Key;
 using scene::Type;
@@ -101,4 +101,4 @@ real Ambient::to_next_frame(real t) const {
     return least;
 }
 
-}  // namespace weir::matter
+}  // namespace weir::thermo
