@@ -46,6 +46,17 @@ void require_same_domain(const scene::Scene& scene, const Checkpoint& from) {
                         scene.file(), fmt::join(there, ", "), fmt::join(here, ", ")));
 }
 
+/// Checkpoint block with the files of the scene (scene_files.hpp); absent where it names none.
+constexpr const char* files_block = "sim.files";
+
+void require_same_files(const scene::Scene& scene, const std::vector<sim::SceneFile>& files, const std::string& there) {
+    if (const std::string changed = sim::changed_file(files, there); !changed.empty())
+        throw BadInput(
+            fmt::format("{}: the file {} has changed since the checkpoint: a run continues with the files it began with; name a "
+                        "file that differs by --set, or start a new run",
+                        scene.file(), changed));
+}
+
 void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
 
 /// A count of steps, frames or changes; all fit in a double.
@@ -110,6 +121,7 @@ void Simulation::save(Checkpoint& to) const {
     for (const auto& o : scene_.overrides()) overrides += o.key + '=' + o.value + '\0';
     put_text(to, "sim.overrides", overrides);
     to.put(domain_block, domain_of(scene_));
+    if (!files_.empty()) put_text(to, files_block, sim::lines_of(files_));
     to.put_value("sim.steps", steps_);
     to.put_value("sim.frame", frame_);
     to.put_value("sim.at_frame", at_frame_);
@@ -133,6 +145,7 @@ void Simulation::restore(const Checkpoint& from) {
     refuse_while_edited("the simulation restarts from a checkpoint");
     try {
         require_same_domain(scene_, from);
+        if (from.has(files_block)) require_same_files(scene_, files_, get_text(from, files_block));
         resume_changes(from);
         if (Partition cut = balanced_partition(from); !cut.empty()) {
             solver_ = sim::make_solver(scene_, kind_, cut);

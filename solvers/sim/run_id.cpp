@@ -1,5 +1,6 @@
 #include "sim/run_id.hpp"
 
+#include "sim/scene_files.hpp"
 #include "sim/simulation.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <string_view>
 
 namespace weir::sim {
 
@@ -17,13 +17,9 @@ constexpr const char* block = "sim.run";
 
 }  // namespace
 
-std::uint64_t digest(std::string_view text) {
-    std::uint64_t hash = 0xcbf29ce484222325ull;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-    return hash;
+std::string run_id(const scene::Scene& scene) {
+    return fmt::format("{:016x}", digest(scene::to_json(scene.root()) + lines_of(scene_files(scene))));
 }
-
-std::string run_id(const scene::Scene& scene) { return fmt::format("{:016x}", digest(scene::to_json(scene.root()))); }
 
 std::string branch_id(const scene::Scene& scene, const std::string& continued, std::int64_t steps) {
     const std::string own = run_id(scene);

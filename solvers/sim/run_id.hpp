@@ -5,14 +5,11 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 namespace weir::sim {
 
-/// FNV-1a over 64 bits (Fowler, Noll & Vo).
-std::uint64_t digest(std::string_view text);
-/// A digest of the parsed scene. Runs of the same scene have the same id for any number of threads and ranks, as their files have the same
-/// bytes.
+/// A digest of the parsed scene and of the files that it names. Runs of the same scene have the same id for any number of threads and
+/// ranks, as their files have the same bytes.
 std::string run_id(const scene::Scene& scene);
 /// The id of a run of this scene that continues run `continued` after `steps` steps in a folder of its own. Returns `continued` where the
 /// scene is the same.

@@ -79,6 +79,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       meets_frames_(scene_.text("output.at") == "exact"),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
       changes_(changes_in(scene_)),
+      files_(sim::scene_files(scene_)),
       threads_(sim::threads_for(scene_)) {
     read_times();
     if (scene_.has("output.fields")) {
@@ -117,6 +118,7 @@ void Simulation::steer(const scene::Override& change) {
     solver->restore(state);
     replace(std::move(solver));
     scene_ = std::move(changed);
+    files_ = sim::scene_files(scene_);
     read_times();
 }
 

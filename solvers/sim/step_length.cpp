@@ -55,9 +55,11 @@ real Simulation::uncut_dt() const { return fixed_dt_ > 0 ? fixed_dt_ : std::min(
 bool Simulation::hopeless(real dt) const { return dt < 1e-6 * longest_dt_ && dt < 1e-9 * std::min(end_, every_); }
 
 void Simulation::refuse_step(const char* which, real dt) const {
-    throw NumericalFailure("time step", fmt::format("the {} step is {} s{}: time no longer advances. Now {}", which, scene::number_text(dt),
-                                                    longest_dt_ > dt ? fmt::format(" (the longest was {:.3g} s)", longest_dt_) : "",
-                                                    sim::extremes(scene_, fields(), time())));
+    const StepLimit stable = solver_->stable_dt();
+    const std::string longest = longest_dt_ > dt ? fmt::format(" (the longest was {:.3g} s)", longest_dt_) : "",
+                      why = stable.dt < infinity ? fmt::format("; stable up to {} s ({})", scene::number_text(stable.dt), stable.why) : "";
+    throw NumericalFailure("time step", fmt::format("the {} step is {} s{}{}: time no longer advances. Now {}", which,
+                                                    scene::number_text(dt), longest, why, sim::extremes(scene_, fields(), time())));
 }
 
 real Simulation::wanted_dt(real target) const {

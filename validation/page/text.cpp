@@ -10,6 +10,16 @@
 
 namespace weir::validation {
 
+namespace {
+
+/// HTML allows no control characters but blanks (HTML Living Standard, 13.1.3).
+bool is_control(char c) {
+    const auto code = static_cast<unsigned char>(c);
+    return (code < 0x20 && c != '\t' && c != '\n' && c != '\r') || code == 0x7f;
+}
+
+}  // namespace
+
 std::string escaped(std::string_view text) {
     std::string s;
     for (const char c : text) switch (c) {
@@ -26,7 +36,7 @@ std::string escaped(std::string_view text) {
                 s += "&quot;";
                 break;
             default:
-                s += c;
+                s += is_control(c) ? "\uFFFD" : std::string(1, c);
         }
     return s;
 }

@@ -10,7 +10,7 @@
 
 namespace weir::validation {
 
-/// &, <, > and quotes as entities.
+/// &, <, > and quotes as entities; control characters as U+FFFD.
 std::string escaped(std::string_view text);
 /// Four digits, with thin exponents: 1.2e-7 is "1.2×10⁻⁷". Not a number is "not a number".
 std::string number_text(double value);

@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/machine.hpp"
-#include "sim/run_id.hpp"
+#include "sim/scene_files.hpp"
 
 #include <fmt/format.h>
 
@@ -28,23 +28,6 @@ std::int64_t time_of_program() {
     return std::filesystem::last_write_time(module ? info.dli_fname : "/proc/self/exe", none).time_since_epoch().count();
 }
 
-/// The content of every file that the scene names (terrain, meshes), as a hash: every text in quotes that is the path of one.
-std::string files_of(const scene::Scene& scene, const std::string& text) {
-    const auto folder = std::filesystem::path(scene.file()).parent_path();
-    std::string hashes;
-    for (std::size_t open = text.find('"'), close = 0; open != std::string::npos; open = text.find('"', close + 1)) {
-        close = text.find('"', open + 1);
-        if (close == std::string::npos) break;
-        const std::filesystem::path file = folder / text.substr(open + 1, close - open - 1);
-        std::error_code none;
-        if (close == open + 1 || !std::filesystem::is_regular_file(file, none)) continue;
-        std::ifstream content(file, std::ios::binary);
-        hashes +=
-            fmt::format("{} {:016x}\n", file.filename().string(), sim::digest(std::string{std::istreambuf_iterator<char>(content), {}}));
-    }
-    return hashes;
-}
-
 /// What a run depends on: the program, the whole scene, not how it is written, and its files. Output changes no result, unless steps are
 /// shortened to meet frames.
 std::string key_of(const scene::Scene& scene) {
@@ -55,7 +38,7 @@ std::string key_of(const scene::Scene& scene) {
     const output::Machine machine = output::this_machine();
     const std::string text = scene::to_toml(root);
     return fmt::format("{} {} {} {}\n{}{}", machine.version, machine.commit, machine.rounding, time_of_program(), text,
-                       files_of(scene, text));
+                       sim::lines_of(sim::scene_files(scene)));
 }
 
 /// A kept run: a line with the checksum of its scene and of its text, then the text.

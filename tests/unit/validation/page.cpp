@@ -60,6 +60,13 @@ TEST("bytes are written in base 64 as RFC 4648 gives it") {
         EXPECT_EQ(base64(plain), coded);
 }
 
+TEST("a text of a scene reaches a page as text: no markup, and no control character") {
+    EXPECT_EQ(escaped("a < b & \"c\" > d"), "a &lt; b &amp; &quot;c&quot; &gt; d");
+    EXPECT_EQ(escaped(std::string("bell \a, escape \x1b[31m, zero ") + '\0' + ", delete \x7f"),
+              "bell \uFFFD, escape \uFFFD[31m, zero \uFFFD, delete \uFFFD");
+    EXPECT_EQ(escaped("two\nlines\tof \u03c1"), "two\nlines\tof \u03c1");
+}
+
 TEST("a straight line keeps its ends, a corner stays, and a thousand steps of noise keep their envelope") {
     std::string straight = "M0.00,0.00", corner = "M0.00,0.00", noise = "M0.00,0.00";
     for (int i = 1; i <= 1000; ++i) {
