@@ -82,6 +82,8 @@ template <int D>
 poisson::Operator<D> two_phase_operator(const Grid<real, D>& part, real ratio) {
     poisson::Operator<D> A;
     A.cells = Grid<poisson::Cell, D>(part.extent(), poisson::Cell::fluid);
+    A.light = Grid<std::uint8_t, D>(part.extent());
+    for (std::size_t i = 0; i < part.size(); ++i) A.light[i] = part[i] < 0.5;
     const auto density = [&](const Index<D>& I) { return part(I) + (1 - part(I)) / ratio; };
     for (int a = 0; a < D; ++a) {
         auto& w = A.weight[static_cast<std::size_t>(a)];
