@@ -61,11 +61,15 @@ bool liquid_at(const std::string& shape, const Vec<D>& x, real h, real& depth) {
 template <int D>
 Grid<real, D> liquid_parts(const std::string& shape, int n) {
     constexpr int points = D == 2 ? 4 : 2;
-    real depth = 0;
-    if (!liquid_at<D>(shape, {}, 1.0 / n, depth)) return {};
+    real unused = 0;
+    if (!liquid_at<D>(shape, {}, 1.0 / n, unused)) return {};
     Grid<real, D> part(replicated(Index<D>::constant(n)));
     for_each_cell<D>(part.extent(), [&](const Index<D>& I) {
-        real sum = 0;
+        real sum = 0, depth = 0;
+        Vec<D> centre;
+        for (int a = 0; a < D; ++a) centre[a] = (I[a] + 0.5) / n;
+        liquid_at<D>(shape, centre, 1.0 / n, depth);
+        if (std::abs(depth) > 2.0 / n) return void(part(I) = depth > 0);  // slopes are at most 1.1: no interface in the cell
         for_each_in(Index<D>::constant(0), replicated(Index<D>::constant(points)), [&](const Index<D>& P) {
             Vec<D> x;
             for (int a = 0; a < D; ++a) x[a] = (I[a] + (P[a] + 0.5) / points) / n;

@@ -61,7 +61,7 @@ TEST("bubbles on a fine grid converge without a breakdown") {
 // The solution is that of an independent method: both are within 1e-8 of b in the residual. The smallest eigenvalue of A is (π/n)², so they
 // agree to 1e-8 n²/π² of b/‖A‖; measured 3e-7 of the largest pressure.
 TEST_IN_2D_AND_3D("the pressure in a cloud agrees with conjugate gradients without aggregates") {
-    const int n = D == 2 ? 64 : 24;
+    const int n = D == 2 ? 48 : 20;
     const auto A = shape<D>("bubbles", n, 100);
     const auto b = random_values<D>(A.cells.extent(), 3);
     const auto one = solve<D>(A, b), other = solve<D>(A, b, "cg_mic0");
@@ -69,7 +69,7 @@ TEST_IN_2D_AND_3D("the pressure in a cloud agrees with conjugate gradients witho
 }
 
 TEST_IN_2D_AND_3D("the pressure in a cloud does not depend on the number of threads") {
-    const int n = D == 2 ? 192 : 40;
+    const int n = D == 2 ? 160 : 32;
     const auto A = shape<D>("bubbles", n, 1000);
     const auto b = random_values<D>(A.cells.extent(), 5);
     set_threads(1);
