@@ -7,7 +7,7 @@ namespace weir::poisson {
 
 namespace {
 
-/// Iterations before the next method takes over; each takes a tenth of one of the pairwise aggregation's.
+/// Iterations before the next method takes over; each takes a sixth of one of the pairwise aggregation's.
 constexpr int worth_while = 64;
 
 }  // namespace
