@@ -1,6 +1,7 @@
 // bench_poisson: our pressure methods against hypre's PFMG-CG, PETSc's, CHOLMOD, Eigen's ICCG and FFTW's DCT on the same numbers.
 //
-//     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] [--csv]
+//     bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles]
+//     [--two-phase] [--ratio R] [--csv]
 //
 // --csv: comma-separated values in place of the table, and after a # what is skipped. Times are the least of K runs, of PETSc,
 // CHOLMOD and Eigen of two at most; a peer that would take minutes or more memory than there is says "skipped" and why. Without --solver
@@ -29,6 +30,7 @@ struct Choice {
     std::vector<std::string> cases, solvers;
     std::vector<int> dims, threads;
     int n = 0, repeat = 5;
+    real ratio = 1000;  // of densities
     bool quick = false, obstacles = false, pfmg_process = false;
     bool csv = false;
 };
@@ -44,7 +46,7 @@ struct Row {
 
 constexpr const char* usage =
     "usage: bench_poisson [--case NAME]... [--dim 2|3] [--n N] [--threads T]... [--solver NAME]... [--repeat K] [--quick] [--obstacles] "
-    "[--csv]";
+    "[--two-phase] [--ratio R] [--csv]";
 
 Choice read_options(int argc, char** argv) {
     Choice c;
@@ -69,12 +71,16 @@ Choice read_options(int argc, char** argv) {
             c.n = std::stoi(value());
         else if (key == "--repeat")
             c.repeat = std::stoi(value());
+        else if (key == "--ratio")
+            c.ratio = std::stod(value());
         else if (key == "--csv")
             c.csv = true;
         else if (key == "--quick")
             c.quick = true;
         else if (key == "--obstacles")
             c.obstacles = true;
+        else if (key == "--two-phase")
+            c.cases = {"uniform", "wave", "bubble", "drop", "dam", "drops", "bubbles", "film", "gas_film"};
         else if (key == "--pfmg-process")
             c.pfmg_process = true;
         else
@@ -141,7 +147,7 @@ Row measure(const std::string& solver, const std::string& name, const bench::Pro
     if (solver == "pfmg_cg") {
         char self[4096] = {};
         std::ifstream("/proc/self/cmdline").getline(self, sizeof self, '\0');
-        const auto result = bench::run_pfmg(self, name, D, row.n, threads, choice.repeat);
+        const auto result = bench::run_pfmg(self, name, D, row.n, threads, choice.repeat, choice.ratio);
         row.skipped = result.failure;
         row.setup_ms = result.setup_ms, row.solve_ms = result.solve_ms, row.residual = result.residual;
         row.iterations = result.iterations, row.bytes = result.bytes;
@@ -224,7 +230,7 @@ void run_case(const std::string& name, int n, int threads, const Choice& choice)
         if (name == "box" || name == "wavy") solvers.insert(solvers.end(), {"eigen_iccg", "dct"});
         if (poisson::has_petsc() && threads == 1) solvers.insert(solvers.end(), {"petsc_gamg", "petsc_boomeramg", "petsc_icc"});
     }
-    const auto problem = bench::make<D>(name, n);
+    const auto problem = bench::make<D>(name, n, choice.ratio);
     double pfmg_ms = 0;
     std::map<std::string, Grid<real, D>> answers;
     std::map<std::string, double> milliseconds;
@@ -270,7 +276,7 @@ int run(const Choice& choice) {
 int main(int argc, char** argv) {
     try {
         const Choice choice = read_options(argc, argv);
-        if (choice.pfmg_process) return bench::pfmg_process(choice.cases[0], choice.dims[0], choice.n, choice.repeat);
+        if (choice.pfmg_process) return bench::pfmg_process(choice.cases[0], choice.dims[0], choice.n, choice.repeat, choice.ratio);
         distributed::join();
         return distributed::leave(run(choice), "");
     } catch (const std::exception& error) {

@@ -109,8 +109,8 @@ struct Struct {
 };
 
 template <int D>
-int measure(const std::string& name, int n, int repeat, int rank, int ranks) {
-    const Problem<D> problem = make<D>(name, n);
+int measure(const std::string& name, int n, int repeat, double ratio, int rank, int ranks) {
+    const Problem<D> problem = make<D>(name, n, ratio);
     Struct<D> system(problem, rank, ranks);
     const double before = heap_bytes(), start = now_ms();
     HYPRE_StructSolver pcg, pfmg;
@@ -154,26 +154,26 @@ int measure(const std::string& name, int n, int repeat, int rank, int ranks) {
 
 }  // namespace
 
-int pfmg_process(const std::string& name, int dim, int n, int repeat) {
+int pfmg_process(const std::string& name, int dim, int n, int repeat, double ratio) {
     MPI_Init(nullptr, nullptr);
     int rank = 0, ranks = 1;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     set_threads(1);
     HYPRE_Init();
-    const int code = dim == 2 ? measure<2>(name, n, repeat, rank, ranks) : measure<3>(name, n, repeat, rank, ranks);
+    const int code = dim == 2 ? measure<2>(name, n, repeat, ratio, rank, ranks) : measure<3>(name, n, repeat, ratio, rank, ranks);
     HYPRE_Finalize();
     MPI_Finalize();
     return code;
 }
 
-PfmgResult run_pfmg(const std::string& program, const std::string& name, int dim, int n, int ranks, int repeat) {
+PfmgResult run_pfmg(const std::string& program, const std::string& name, int dim, int n, int ranks, int repeat, double ratio) {
     std::vector<std::string> words;
     if (ranks > 1)
         words = {"env", "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "mpirun", "--oversubscribe",
                  "-n",  std::to_string(ranks)};
     words.insert(words.end(), {program, "--pfmg-process", "--case", name, "--dim", std::to_string(dim), "--n", std::to_string(n),
-                               "--repeat", std::to_string(repeat)});
+                               "--repeat", std::to_string(repeat), "--ratio", std::to_string(ratio)});
     PfmgResult result;
     result.failure = "no answer from its process";
     std::istringstream lines(output_of_program(words).value_or(""));

@@ -12,9 +12,9 @@ struct PfmgResult {
 };
 
 /// Starts this program again as `ranks` MPI processes and reads what they measured.
-PfmgResult run_pfmg(const std::string& program, const std::string& name, int dim, int n, int ranks, int repeat);
+PfmgResult run_pfmg(const std::string& program, const std::string& name, int dim, int n, int ranks, int repeat, double ratio);
 
 /// What such a process does; prints one line from rank 0.
-int pfmg_process(const std::string& name, int dim, int n, int repeat);
+int pfmg_process(const std::string& name, int dim, int n, int repeat, double ratio);
 
 }  // namespace weir::bench

@@ -1,6 +1,7 @@
 #include "problems.hpp"
 
 #include "core/error.hpp"
+#include "phase_shapes.hpp"
 #include "poisson/matrix/system.hpp"
 #include "poisson_problem.hpp"
 
@@ -98,7 +99,7 @@ void cut_by_solids(poisson::Operator<D>& A) {
 }  // namespace
 
 template <int D>
-Problem<D> make(const std::string& name, int n) {
+Problem<D> make(const std::string& name, int n, real ratio) {
     const bool wavy = name.starts_with("wavy");
     const ::bench::PoissonProblem source = ::bench::make_problem(wavy, D, n);
     Problem<D> problem;
@@ -107,7 +108,9 @@ Problem<D> make(const std::string& name, int n) {
     for (std::size_t i = 0; i < A.cells.size(); ++i) A.cells[i] = source.fluid[i] ? Cell::fluid : Cell::air;
     problem.b = Grid<real, D>(A.cells.extent());
     std::copy(source.b.begin(), source.b.end(), problem.b.data());
-    if (name == "rooms" || name == "slits")
+    if (const auto part = liquid_parts<D>(name, n); !part.empty())
+        A = two_phase_operator(part, ratio);
+    else if (name == "rooms" || name == "slits")
         build_rooms(A, name == "slits");
     else if (name == "blocks")
         build_blocks(A);
@@ -123,7 +126,8 @@ Problem<D> make(const std::string& name, int n) {
         set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return banded_fraction(I, a, n); });
     else if (name != "box" && name != "wavy")
         throw BadInput("unknown case \"" + name +
-                       "\"; known: box, wavy, box_weights, wavy_weights, rooms, slits, blocks, fractions, magnitudes, bands");
+                       "\"; known: box, wavy, box_weights, wavy_weights, rooms, slits, blocks, fractions, magnitudes, bands, "
+                       "uniform, wave, bubble, drop, dam, drops, bubbles, film, gas_film");
     for (std::size_t i = 0; i < A.cells.size(); ++i) {
         if (A.cells[i] != Cell::fluid) problem.b[i] = 0;
         problem.unknowns += A.cells[i] == Cell::fluid;
@@ -145,8 +149,8 @@ real true_residual(const Problem<D>& problem, const Grid<real, D>& p) {
     return std::sqrt(square(r) / square(problem.b));
 }
 
-template Problem<2> make<2>(const std::string&, int);
-template Problem<3> make<3>(const std::string&, int);
+template Problem<2> make<2>(const std::string&, int, real);
+template Problem<3> make<3>(const std::string&, int, real);
 template real true_residual<2>(const Problem<2>&, const Grid<real, 2>&);
 template real true_residual<3>(const Problem<3>&, const Grid<real, 3>&);
 

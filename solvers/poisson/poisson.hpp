@@ -31,6 +31,9 @@ struct Operator {
     std::array<Grid<real, D>, D> weight;
     /// Multiplies every face weight along an axis: (h/h_a)² for anisotropic cells.
     Vec<D> axis_weight = Vec<D>::constant(1);
+    /// 1 in cells of the lighter of two phases, whose face weights are larger by the ratio of the densities; empty: one phase. The matrix
+    /// does not depend on it: multigrid chooses its coarse unknowns by it.
+    Grid<std::uint8_t, D> light;
     /// The first and the last cell along a periodic axis are neighbours; the face between them is entry 0 (entry n is ignored).
     std::array<bool, D> periodic{};
 };

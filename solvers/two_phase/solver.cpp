@@ -97,7 +97,7 @@ template <int D>
 const poisson::Report& TwoPhase<D>::project(real dt) {
     const auto timed = passes_.time("project");
     sync_periodic(state_.u, state_.sides);
-    projection_.set_matrix(state_);
+    projection_.set_matrix(state_, &fraction());
     return projection_.project(state_, dt);
 }
 

@@ -147,7 +147,7 @@ Projection<D>::Projection(const PoissonChoice& choice, const MacState<D>& s)
 }
 
 template <int D>
-void Projection<D>::set_matrix(const MacState<D>& s) {
+void Projection<D>::set_matrix(const MacState<D>& s, const Grid<real, D>* heavy) {
     matrix_.cells = s.cells;
     bool weighted = s.solid.any() || !s.mobility[0].empty();
     for (int a = 0; a < D; ++a) weighted = weighted || s.sides.open(a, 0) || s.sides.open(a, 1);
@@ -174,6 +174,10 @@ void Projection<D>::set_matrix(const MacState<D>& s) {
         for_each_held(weight, Index<D>{}, rows, [&](const Index<D>& I) { for_each_block(I, weight.extent()[0], set_row); });
     }
     if (!s.mobility[0].empty()) leave_out_ice();
+    if (heavy != nullptr) {
+        if (matrix_.light.empty()) matrix_.light = Grid<std::uint8_t, D>(heavy->extent());
+        for_each_cell(heavy->extent(), [&](const Index<D>& I) { matrix_.light(I) = (*heavy)(I) < 0.5; });
+    }
     solver_->setup(matrix_);
 }
 
@@ -247,7 +251,7 @@ const poisson::Report& Projection<D>::project(MacState<D>& s, real dt, BodiesInF
 
 template <int D>
 std::size_t Projection<D>::bytes() const {
-    std::size_t total = solver_->bytes() + rhs_.bytes() + matrix_.cells.bytes();
+    std::size_t total = solver_->bytes() + rhs_.bytes() + matrix_.cells.bytes() + matrix_.light.bytes();
     for (const auto& weight : matrix_.weight) total += weight.bytes();
     return total;
 }

@@ -50,8 +50,8 @@ template <int D>
 class Projection {
 public:
     Projection(const PoissonChoice& choice, const MacState<D>& s);
-    /// Must be called after solids have moved.
-    void set_matrix(const MacState<D>& s);
+    /// Must be called after solids have moved. `heavy`: with two phases, the part of each cell in the heavier one.
+    void set_matrix(const MacState<D>& s, const Grid<real, D>* heavy = nullptr);
     /// Solves for s.p, with its present values as the initial guess, and makes s.u divergence-free. The same solve computes the velocities
     /// of `bodies`, if given.
     const poisson::Report& project(MacState<D>& s, real dt, BodiesInFlow<D>* bodies = nullptr, SolidPlacement<D>* solids = nullptr);

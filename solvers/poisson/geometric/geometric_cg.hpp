@@ -32,6 +32,7 @@ public:
     /// The same with low-rank columns; b is changed temporarily.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, Grid<real, D>& b, const Options& options, Report& report, const LowRank& more);
     std::size_t bytes() const { return arena_.bytes() + hierarchy_.bytes() + sums_.capacity() * sizeof(PlaneSums) + added_.bytes(); }
+    Hierarchy<D>& hierarchy() { return hierarchy_; }
     /// One cycle u = M r, for tests.
     void precondition(const Natural<D>& problem, const Grid<real, D>& r, Grid<real, D>& u);
 

@@ -15,12 +15,6 @@ constexpr std::size_t direct_cells = 300;   // levels up to this size are solved
 constexpr std::size_t small_level = 20000;  // smaller levels do not use a second thread
 constexpr real strong_axis = 0.4;           // only axes with at least this part of the largest weight are coarsened
 
-/// Widths for Dirichlet neighbours: an air cell keeps its distance while fluid cells grow (half a cell of each).
-real zero_scale(real m) {
-    const auto f = [](real width) { return width / (width / 2 + 0.5); };
-    return 0.5 * f(2 * m) / f(m);
-}
-
 template <int D, class Rows>
 void coarsen_row(const Level<D>& fine, Level<D>& coarse, int Q, int J, const Rows& rows, RowBuffers<D>& buffers) {
     const int N = coarse.at.n[0], n = fine.at.n[0];

@@ -69,6 +69,13 @@ struct Layout {
     }
 };
 
+/// The factor of the weights to p = 0 from cells of m finest cells to cells of 2 m: an air cell keeps its distance while fluid cells grow
+/// (half a cell of each).
+inline real zero_scale(real m) {
+    const auto f = [](real width) { return width / (width / 2 + 0.5); };
+    return 0.5 * f(2 * m) / f(m);
+}
+
 /// Weights of the lower faces of one natural row, and its cells' couplings to p = 0. Used only while building.
 template <int D>
 struct FaceRow {

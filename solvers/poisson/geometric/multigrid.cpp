@@ -1,6 +1,8 @@
-// multigrid: conjugate gradients preconditioned by the geometric V-cycle where the cells allow it, otherwise by aggregation multigrid.
+// multigrid: conjugate gradients preconditioned by the geometric V-cycle where the cells allow it, by aggregates of phases for clouds of
+// bubbles, otherwise by aggregation multigrid.
 #include "poisson/factories.hpp"
 #include "poisson/geometric/geometric_cg.hpp"
+#include "poisson/geometric/two_phase.hpp"
 #include "poisson/matrix/algebraic_multigrid.hpp"
 #include "poisson/matrix/conjugate_gradient.hpp"
 
@@ -20,6 +22,8 @@ public:
         algebraic_.reset();
         geometric_fits_ = geometric_.setup(problem_);
         if (!geometric_fits_) set_up_algebraic();
+        two_phase_.setup(A, problem_.own().distributed());
+        if (geometric_fits_ && two_phase_.is_cloud()) two_phase_.prepare(problem_, geometric_.hierarchy());
         if (options_.record_history) report_.history.reserve(static_cast<std::size_t>(options_.max_iterations));
         report_.components = problem_.closed();
         report_.bytes = bytes();
@@ -27,14 +31,20 @@ public:
     }
 
     /// Walls and slits that coarse cells do not resolve, or weights of many magnitudes, slow the geometric cycle down. The algebraic one
-    /// then continues from its iterate. It is built when a solve first needs it; whether one does depends on that solve alone.
+    /// then continues from its iterate. With two phases, aggregates by phase come between the two. Each is built when a solve first needs
+    /// it; whether one does depends on that solve alone.
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) override {
         const Stopwatch watch;
         check_extents(p.extent() == extent_, "p");
         check_extents(b.extent() == extent_, "b");
         report_.iterations = 0;
+        report_.history.clear();
         bool gave_up = !geometric_fits_;
-        if (geometric_fits_) gave_up = !geometric_.solve(problem_, p, b, options_, report_);
+        if (geometric_fits_ && !two_phase_.is_cloud()) gave_up = !geometric_.solve(problem_, p, b, options_, report_);
+        if (geometric_fits_ && two_phase_.any() && (gave_up || two_phase_.is_cloud())) {
+            two_phase_.prepare(problem_, geometric_.hierarchy());
+            gave_up = !two_phase_.solve(p, b, options_, report_);
+        }
         if (gave_up) {
             const Report& rest = continue_alone(p, b);
             report_.iterations = rest.iterations;
@@ -66,7 +76,9 @@ public:
         if (algebraic_ != nullptr) algebraic_->set_tolerance(tolerance);
     }
 
-    std::size_t bytes() const override { return problem_.bytes() + geometric_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0); }
+    std::size_t bytes() const override {
+        return problem_.bytes() + geometric_.bytes() + two_phase_.bytes() + (algebraic_ != nullptr ? algebraic_->bytes() : 0);
+    }
 
     bool shares_planes() const override { return problem_.own().distributed(); }
 
@@ -91,6 +103,7 @@ private:
     Index<D> extent_{};
     Natural<D> problem_;
     GeometricCg<D> geometric_;
+    TwoPhase<D> two_phase_;
     bool geometric_fits_ = false;
     std::unique_ptr<ConjugateGradient<D, AlgebraicMultigrid>> algebraic_;
     Report report_;

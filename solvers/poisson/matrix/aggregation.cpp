@@ -118,7 +118,6 @@ Aggregation join_pairs(const Matrix& A, const Vector& zero, const Aggregation& g
 
 }  // namespace
 
-/// Sorts the entries of the last row of C by column.
 void sort_last_row(Matrix& C) {
     for (std::size_t k = static_cast<std::size_t>(C.start.back()) + 1; k < C.column.size(); ++k)
         for (std::size_t m = k; m > static_cast<std::size_t>(C.start.back()) && C.column[m] < C.column[m - 1]; --m) {

@@ -17,4 +17,7 @@ Aggregation aggregate(const Matrix& A);
 /// Galerkin product with piecewise constant transfers: sums of the weights, and of the couplings to p = 0.
 Matrix coarsen(const Matrix& A, const Aggregation& groups);
 
+/// Sorts the entries of the last, unfinished row of C by column.
+void sort_last_row(Matrix& C);
+
 }  // namespace weir::poisson
