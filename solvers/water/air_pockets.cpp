@@ -138,20 +138,38 @@ auto AirPockets<D>::overlaps(const MacState<D>& state, const Grid<int, D>& old_l
     return list;
 }
 
-/// Q of a pocket of new air: that of the open air, or of the pressure that the liquid had in its cells.
+/// Mean of p over the cells of each pocket [Pa].
 template <int D>
-void AirPockets<D>::enclose(const MacState<D>& state, std::size_t k) {
-    real sum = 0, cells = 0;
+std::vector<real> AirPockets<D>::mean_pressures(const Grid<real, D>& p) const {
+    std::vector<real> mean(pockets_.size(), 0), cells(pockets_.size(), 0);
     for (std::size_t i = 0; i < label_.size(); ++i)
-        if (label_[i] == static_cast<int>(k) + 1) sum += state.p[i], cells += 1;
-    pockets_[k].content = content_per_volume((law_ ? law_->pressure : 0) + sum / cells) * pockets_[k].volume;
+        if (label_[i] > open_air) {
+            const auto k = static_cast<std::size_t>(label_[i]) - 1;
+            mean[k] += p[i], cells[k] += 1;
+        }
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] /= cells[k];
+    return mean;
+}
+
+/// Pressures from Q. Pockets that appeared in liquid, and unresolved ones, have that of the last step instead, and Q follows.
+template <int D>
+void AirPockets<D>::set_pressures(const MacState<D>& state, const std::vector<char>& appeared) {
+    const real least_cells = D == 2 ? 9 : 27;
+    const std::vector<real> mean = mean_pressures(state.p);
+    for (std::size_t k = 0; k < pockets_.size(); ++k) {
+        Pocket& pocket = pockets_[k];
+        pocket.resolved = pocket.capacity >= least_cells;
+        const real outer = law_ ? law_->pressure + mean[k] : 0;
+        if (appeared[k] || (law_ && !pocket.resolved && !restored_)) pocket.content = content_per_volume(outer) * pocket.volume;
+        if (law_) pocket.pressure = std::pow(pocket.content / pocket.volume, law_->exponent);
+    }
 }
 
 template <int D>
 void AirPockets<D>::carry_content(const MacState<D>& state, const Grid<int, D>& old_label, const Grid<real, D>& old_air,
                                   const std::vector<Pocket>& old) {
     std::vector<real> all(old.size() + 1, 0);
-    std::vector<char> known(pockets_.size(), 0), was_pocket(pockets_.size(), 0);
+    std::vector<char> known(pockets_.size(), 0), was_pocket(pockets_.size(), 0), appeared(pockets_.size(), 0);
     const real of_open_air = content_per_volume(law_ ? law_->pressure : 0);
     const Overlaps list = old_label.empty() ? Overlaps{} : overlaps(state, old_label, old_air, old.size());
     for (const auto& [labels, volume] : list) all[static_cast<std::size_t>(labels.first)] += volume;
@@ -168,10 +186,10 @@ void AirPockets<D>::carry_content(const MacState<D>& state, const Grid<int, D>& 
         pockets_[k].content += old[static_cast<std::size_t>(from) - 1].content * volume / all[static_cast<std::size_t>(from)];
     }
     for (std::size_t k = 0; k < pockets_.size(); ++k) {
-        if (known[k] && !was_pocket[k]) pockets_[k].content = of_open_air * pockets_[k].volume;
-        if (!known[k] && !old_label.empty()) enclose(state, k);
-        if (old_label.empty()) pockets_[k].content = of_open_air * pockets_[k].volume;
+        if (!was_pocket[k]) pockets_[k].content = of_open_air * pockets_[k].volume;
+        appeared[k] = !old_label.empty() && !known[k];
     }
+    set_pressures(state, appeared);
 }
 
 template <int D>
@@ -182,8 +200,7 @@ void AirPockets<D>::find(const MacState<D>& state) {
     label_components(state);
     measure(state);
     carry_content(state, old_label, old_air, old);
-    if (law_)
-        for (Pocket& pocket : pockets_) pocket.pressure = std::pow(pocket.content / pocket.volume, law_->exponent);
+    restored_ = false;
 }
 
 template <int D>
@@ -195,11 +212,7 @@ auto AirPockets<D>::largest() const -> const Pocket* {
 
 template <int D>
 real AirPockets<D>::mean_pressure(const Grid<real, D>& p) const {
-    const Pocket* of = largest();
-    real sum = 0, cells = 0;
-    for (std::size_t i = 0; of && i < label_.size(); ++i)
-        if (pocket(i) == of) sum += p[i], cells += 1;
-    return cells > 0 ? sum / cells : 0;
+    return pockets_.empty() ? 0 : mean_pressures(p)[static_cast<std::size_t>(largest() - pockets_.data())];
 }
 
 template <int D>
@@ -233,6 +246,7 @@ void AirPockets<D>::restore(const Checkpoint& from) {
     std::vector<real> content(from.held<real>("water.air_content").all);
     from.get("water.air_content", std::span<real>(content));
     pockets_.assign(content.size(), Pocket{});
+    restored_ = true;
     for (std::size_t k = 0; k < content.size(); ++k) pockets_[k].content = content[k];
     for (const int label : label_.values())
         if (label < no_air || label > static_cast<int>(content.size()))

@@ -1,7 +1,8 @@
 // Enclosed air: connected components of air cells that touch no open side and no emitter. Each pocket conserves Q = p^(1/γ) V (p V^γ =
 // const, Poisson 1823), or its volume where the gas is incompressible: Q = V. Where pockets merge Q is added; where one splits, each part
 // takes its share of the volume; air that was open is enclosed at the pressure of the open air. The pressure of a pocket follows from its
-// volume, so it does not drift.
+// volume, so it does not drift. In a pocket of less than three cells across it would follow the error of the volume: there the gas is
+// incompressible in this step, and has the pressure of the liquid.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "free_surface/level_set.hpp"
@@ -31,6 +32,7 @@ public:
         real volume = 0;    // [m^D]
         real capacity = 0;  // Σ of the open parts of its cells [cells]
         real pressure = 0;  // absolute [Pa]; 0 where the gas is incompressible
+        bool resolved = true;
     };
 
     /// All arguments must outlive it. `closed`: cells inside solids, empty without solids. `part`: the liquid fraction of each cell;
@@ -79,7 +81,8 @@ private:
     void carry_content(const MacState<D>& state, const Grid<int, D>& old_label, const Grid<real, D>& old_air,
                        const std::vector<Pocket>& old);
     Overlaps overlaps(const MacState<D>& state, const Grid<int, D>& old_label, const Grid<real, D>& old_air, std::size_t old_count) const;
-    void enclose(const MacState<D>& state, std::size_t k);
+    void set_pressures(const MacState<D>& state, const std::vector<char>& appeared);
+    std::vector<real> mean_pressures(const Grid<real, D>& p) const;
     /// Q of a unit of volume at an absolute pressure.
     real content_per_volume(real pressure) const { return law_ ? std::pow(std::max(pressure, real(1)), 1 / law_->exponent) : 1; }
 
@@ -92,6 +95,7 @@ private:
     Grid<real, D> air_;  // volume of air in each air cell [cells]
     std::vector<Pocket> pockets_;
     bool has_open_air_ = false;
+    bool restored_ = false;  // since the last find()
     std::vector<std::size_t> stack_;
 };
 

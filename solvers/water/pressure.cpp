@@ -1,6 +1,7 @@
 #include "water/pressure.hpp"
 
 #include "free_surface/marker_lanes.hpp"
+#include "mac/grid/closed_volume.hpp"
 
 #include <algorithm>
 
@@ -191,6 +192,20 @@ const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
     return solver_->solve(state.p, b_);
 }
 
+/// Where solids change the volume of liquid and incompressible air without outflow, no pressure can balance it
+/// (mac/grid/closed_volume.hpp). `cells`: those of the state, with pockets of air as fluid.
+template <int D>
+static void require_room(MacState<D>& state, Grid<Cell, D>& cells, const SolidPlacement<D>& solids, real divergence) {
+    std::swap(state.cells, cells);
+    try {
+        mac::require_room(state, solids, divergence);
+    } catch (...) {
+        std::swap(state.cells, cells);
+        throw;
+    }
+    std::swap(state.cells, cells);
+}
+
 template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
@@ -210,6 +225,7 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
     set_pressure_level(state);
     subtract(state, surface, dt, sigma, curvature, state.u.face);
+    if (pockets_ && !pockets_->law() && solids) require_room(state, A_.cells, *solids, max_divergence(state));
     return report;
 }
 

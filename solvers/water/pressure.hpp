@@ -26,8 +26,9 @@ class SurfacePressure {
 public:
     SurfacePressure() = default;
     SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice);
-    /// From now on enclosed air resists (air_pockets.hpp); without this call all air has p = 0.
-    void enclose_air(std::unique_ptr<AirPockets<D>> pockets);
+    /// From now on enclosed air resists (air_pockets.hpp); without this call all air has p = 0. `acceleration`: that of the waves of a few
+    /// cells [m/s²], from which the time follows in which incompressible gas gets back lost volume.
+    void enclose_air(std::unique_ptr<AirPockets<D>> pockets, real acceleration);
     /// Stores the velocity of the enclosed air after the projection of a step.
     void keep_gas_velocity(const MacState<D>& state);
     /// Number of pockets; volume of the largest, and its pressure: absolute where the gas can be squeezed, otherwise relative to open air.
@@ -99,6 +100,7 @@ private:
     std::unique_ptr<AirPockets<D>> pockets_;     // nullptr where the scene names no enclosed air
     std::array<Grid<real, D>, D> gas_velocity_;  // u of enclosed air after the last projection, at least on its faces
     Grid<real, D> zero_;                         // coupling of squeezable gas to p = 0
+    real restoring_time_ = 0;                    // √(h/g) [s]
     real gas_weight_ = 0;                        // between cells of enclosed air
 };
 

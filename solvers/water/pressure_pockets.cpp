@@ -6,21 +6,22 @@
 #include "water/pressure.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace weir::water {
 
 using poisson::Cell;
 
 namespace {
-constexpr real ahead = 0.5;         // β
-constexpr real light = 1000;        // ρ_l/ρ_g of enclosed gas
-constexpr real restored = 0.25;     // part of a lost or gained volume that a step gives back to incompressible gas
-constexpr real most_change = 0.05;  // most of it, relative to the cells of the pocket
+constexpr real ahead = 0.5;      // β
+constexpr real light = 1000;     // ρ_l/ρ_g of enclosed gas
+constexpr real restored = 0.25;  // part of a lost or gained volume that incompressible gas gets back in a step, or in the time √(h/g)
 }  // namespace
 
 template <int D>
-void SurfacePressure<D>::enclose_air(std::unique_ptr<AirPockets<D>> pockets) {
+void SurfacePressure<D>::enclose_air(std::unique_ptr<AirPockets<D>> pockets, real acceleration) {
     pockets_ = std::move(pockets);
+    restoring_time_ = acceleration > 0 ? std::sqrt(frame_.h_min() / acceleration) : 0;
     for (std::size_t a = 0; a < D; ++a) gas_velocity_[a] = Grid<real, D>(A_.weight[a].extent());
     if (pockets_->law()) zero_ = Grid<real, D>(frame_.cells);
 }
@@ -89,7 +90,7 @@ void SurfacePressure<D>::couple_gas(real rho, real dt) {
     const real scale = h2_ * rho / (dt * dt * ahead * pockets_->law()->exponent * frame_.cell_volume());
     for_each_cell(frame_.cells, [&](const Index<D>& I) {
         const auto* pocket = pockets_->pocket(A_.cells.linear(I));
-        zero_(I) = pocket ? scale * pocket->volume / pocket->pressure * pockets_->capacity(I) / pocket->capacity : 0;
+        zero_(I) = pocket && pocket->resolved ? scale * pocket->volume / pocket->pressure * pockets_->capacity(I) / pocket->capacity : 0;
     });
     poisson::zero_coupling(*solver_)->couple_to_zero(&zero_);
 }
@@ -99,7 +100,7 @@ template <int D>
 void SurfacePressure<D>::add_gas_sources(real rho, real dt) {
     if (!pockets_) return;
     const auto& law = pockets_->law();
-    const real scale = h2_ * rho / (dt * dt);
+    const real rate = restored / std::max(dt, restoring_time_), scale = h2_ * rho / dt * rate;
     for_each_cell(frame_.cells, [&](const Index<D>& I) {
         const auto* pocket = pockets_->pocket(A_.cells.linear(I));
         if (!pocket) return;
@@ -107,8 +108,8 @@ void SurfacePressure<D>::add_gas_sources(real rho, real dt) {
             b_(I) += zero_(I) * (pocket->pressure - law->pressure);
             return;
         }
-        const real lost = restored * (pocket->content - pocket->volume) / frame_.cell_volume() / pocket->capacity;
-        b_(I) += scale * pockets_->capacity(I) * std::clamp(lost, -most_change, most_change);
+        const real lost = (pocket->content - pocket->volume) / frame_.cell_volume() / pocket->capacity;
+        b_(I) += scale * pockets_->capacity(I) * std::clamp(lost, real(-1), real(1));
     });
 }
 
@@ -157,7 +158,7 @@ std::size_t SurfacePressure<D>::pocket_bytes() const {
 }
 
 #define WEIR_INSTANTIATE(D)                                                                        \
-    template void SurfacePressure<D>::enclose_air(std::unique_ptr<AirPockets<D>>);                 \
+    template void SurfacePressure<D>::enclose_air(std::unique_ptr<AirPockets<D>>, real);           \
     template void SurfacePressure<D>::add_pockets(const MacState<D>&);                             \
     template void SurfacePressure<D>::set_gas_velocity(MacState<D>&) const;                        \
     template void SurfacePressure<D>::keep_gas_velocity(const MacState<D>&);                       \

@@ -110,6 +110,7 @@ private:
     // Start (start.cpp)
     void read_emitters(const scene::Scene& scene);
     void refuse_buried_emitters(const scene::Scene& scene) const;
+    real wave_acceleration() const;
     void refuse_enclosed_air(const scene::Scene& scene) const;
     void fill_with_liquid(const scene::Scene& scene);
     void seed_markers();

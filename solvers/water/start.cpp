@@ -38,8 +38,7 @@ Water<D>::Water(const scene::Scene& scene, const Partition& partition)
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
     volume_ = LiquidVolume<D>(frame_);
     pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
-    const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);  // σ k²/ρ of a wave of ten cells
-    extrapolate_ = Extrapolation<D>(frame_, norm(gravity_) + capillary);
+    extrapolate_ = Extrapolation<D>(frame_, wave_acceleration());
     sums_ = FaceSums<D>(frame_.cells);
     for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
     before_ = state_.u;
@@ -73,6 +72,13 @@ Water<D>::Water(const scene::Scene& scene, const Partition& partition)
     extend_velocity(0);
     seed_markers();
     whole_ = !own().distributed();
+}
+
+/// Gravity and surface tension in a wave of ten cells, σ k²/ρ [m/s²].
+template <int D>
+real Water<D>::wave_acceleration() const {
+    const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);
+    return norm(gravity_) + capillary;
 }
 
 /// The initial pressure for friction: hydrostatic, zero in the highest liquid cell.
@@ -172,7 +178,8 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
     volume_.start(surface_, state_);
     if (options_.encloses_air)
         pressure_.enclose_air(
-            std::make_unique<AirPockets<D>>(frame_, options_.enclosed_gas, surface_, closed_, keeps_volume_ ? &volume_.part() : nullptr));
+            std::make_unique<AirPockets<D>>(frame_, options_.enclosed_gas, surface_, closed_, keeps_volume_ ? &volume_.part() : nullptr),
+            wave_acceleration());
     if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
     pressure_.set_surface(surface_, closed_, state_);
 }

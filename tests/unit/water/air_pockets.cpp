@@ -80,7 +80,7 @@ enclosed_gas = {{ pressure = {6} }}
                        list({"0.0", "-9.81", "0.0"}, D), gas_pressure);
 }
 
-/// A box of 8 by 4 (by 4) cells whose cells are air or liquid as drawn by a predicate, for the bookkeeping of pockets alone.
+/// A box of 8 by 12 (by 4) cells whose cells are air or liquid as drawn by a predicate, for the bookkeeping of pockets alone.
 template <int D>
 struct Drawn {
     water::MacState<D> state;
@@ -91,7 +91,7 @@ struct Drawn {
     Drawn()
         : state(water_scene(fmt::format("solver = \"mac_water\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime.end = 1.0\n"
                                         "fluid.density = 1000.0\nliquid = [ {{ shape = \"box\", min = {}, max = {} }} ]\n",
-                                        D, list({"8", "4", "4"}, D), list({"8.0", "4.0", "4.0"}, D), list({"0.0", "0.0", "0.0"}, D),
+                                        D, list({"8", "12", "4"}, D), list({"8.0", "12.0", "4.0"}, D), list({"0.0", "0.0", "0.0"}, D),
                                         list({"1.0", "1.0", "1.0"}, D))),
                 FieldPlan{}),
           frame(state.u, state.sides),
@@ -110,6 +110,20 @@ struct Drawn {
 
 }  // namespace
 
+// A pocket of two cells across has no law of its own: its pressure is that of the liquid before.
+TEST_IN_2D_AND_3D("a pocket that is not resolved has the pressure of the liquid") {
+    Drawn<D> box;
+    water::AirPockets<D> pockets(box.frame, water::GasLaw{100000, 1.4}, box.surface, box.closed, &box.part);
+    box.draw([](const Index<D>&) { return false; });
+    pockets.find(box.state);
+    box.state.p.fill(5000);
+    box.draw([](const Index<D>& I) { return (I[0] == 2 || I[0] == 3) && (I[1] == 2 || I[1] == 3) && I[D - 1] < 4; });
+    pockets.find(box.state);
+    ASSERT_EQ(pockets.pockets().size(), 1);
+    EXPECT_FALSE(pockets.pockets()[0].resolved);
+    EXPECT_NEAR(pockets.pockets()[0].pressure, 105000, 1e-8);
+}
+
 // p^(1/γ) V adds up: with V1 = V2 the merged pressure is ((p1^(1/γ) + p2^(1/γ)) / 2)^γ.
 TEST_IN_2D_AND_3D("pockets that merge add their content, and parts of a split one have its pressure") {
     Drawn<D> box;
@@ -117,7 +131,7 @@ TEST_IN_2D_AND_3D("pockets that merge add their content, and parts of a split on
     box.draw([](const Index<D>& I) { return I[0] != 3 && I[0] < 7; });
     pockets.find(box.state);
     ASSERT_EQ(pockets.pockets().size(), 2);
-    const real plane = D == 2 ? 4 : 16;
+    const real plane = D == 2 ? 12 : 48;
     EXPECT_NEAR(pockets.pockets()[0].volume, 3 * plane, 1e-12 * plane);
     EXPECT_NEAR(pockets.pockets()[0].pressure, 100000, 1e-8);
     box.draw([](const Index<D>& I) { return I[0] != 3 && I[0] > 1 && I[0] < 7; });  // the first is squeezed to a third
@@ -155,11 +169,11 @@ TEST_IN_2D_AND_3D("air that reaches an open side is open, and is enclosed at its
 // 1%: the volume that the steps lose is given back at a quarter per step; in every direction and at every shift of the grid.
 TEST("a cup upside down under water keeps incompressible air") {
     for (int turns = 0; turns < 4; ++turns)
-        for (const real shift : {0.0, 0.3, 0.5}) {
+        for (const real shift : {0.0, 0.3}) {
             water::Water<2> water(water_scene(cup_scene({.turns = turns, .shift = shift})));
             const real volume = integral(water, "largest_pocket_volume");
             EXPECT_NEAR(volume, 0.32 * 0.25, 0.02 * 0.08) << turns << " " << shift;
-            for (int step = 0; step < 60; ++step) water.step(water.advised_dt());
+            for (int step = 0; step < 30; ++step) water.step(water.advised_dt());
             EXPECT_EQ(integral(water, "air_pockets"), 1) << turns << " " << shift;
             EXPECT_NEAR(integral(water, "largest_pocket_volume"), volume, 0.01 * volume) << turns << " " << shift;
         }
@@ -213,6 +227,27 @@ TEST("a run with enclosed gas continues from its checkpoint with the same bits")
     for (int step = 0; step < 11; ++step) second.step(0.004);
     for (const char* name : {"largest_pocket_volume", "largest_pocket_pressure", "kinetic_energy", "volume"})
         EXPECT_EQ(integral(whole, name), integral(second, name)) << name;
+}
+
+// 0.05 m³ per second leaves a closed box of incompressible water and air nowhere to go; a gas gives way.
+TEST("a piston into a closed box of incompressible air is refused with the place, and squeezes a gas") {
+    const std::string text = at_rest<2>(vec(0.5, 0.5), vec(0, 1), "flip") +
+                             "solids = [ { shape = \"box\", min = [-1.0, -1.0], max = [0.1, 2.0], motion = { kind = \"constant\", "
+                             "velocity = [0.05, 0.0] } } ]\nair = \"enclosed\"\n";
+    water::Water<2> stiff(water_scene(text));
+    std::string message;
+    try {
+        for (int step = 0; step < 5; ++step) stiff.step(0.005);
+    } catch (const NumericalFailure& failure) {
+        message = failure.what();
+    }
+    EXPECT_NE(message.find("an incompressible fluid has no outflow"), std::string::npos) << message;
+    water::Water<2> soft(water_scene(text + "enclosed_gas = { pressure = 100000 }\n"));
+    const real volume = integral(soft, "largest_pocket_volume");
+    for (int step = 0; step < 40; ++step) soft.step(0.005);
+    const real now = integral(soft, "largest_pocket_volume");
+    EXPECT_NEAR(now - volume, -0.05 * 0.2 * 1, 0.03 * 0.01);
+    EXPECT_NEAR(integral(soft, "largest_pocket_pressure"), 1e5 * std::pow(volume / now, 1.4), 1);
 }
 
 TEST("models of air that a scene cannot have are refused with the alternative") {
