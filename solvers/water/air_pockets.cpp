@@ -93,7 +93,18 @@ std::map<int, real> AirPockets<D>::air_beside(const MacState<D>& state, const In
     return beside;
 }
 
-/// Volumes: the air of each air cell, and of each liquid cell at the surface, shared by the air beside it.
+/// Number of cells of each label, from 0 on, around a closed cell.
+template <int D>
+static std::map<int, real> labels_around(const Frame<D>& frame, const Grid<int, D>& label, const Index<D>& I) {
+    std::map<int, real> around;
+    for (int a = 0; a < D; ++a)
+        for (const int by : {-1, 1})
+            if (Index<D> J = I; frame.step(J, a, by) && label(J) >= 0) around[label(J)] += 1;
+    return around;
+}
+
+/// Volumes: the air of each air cell, and of each liquid cell at the surface and each cell that a solid closes but does not fill, shared by
+/// the air beside it.
 template <int D>
 void AirPockets<D>::measure(const MacState<D>& state) {
     const real near = -2 * frame_.h_max();
@@ -102,16 +113,17 @@ void AirPockets<D>::measure(const MacState<D>& state) {
         if (label > open_air) pockets_[static_cast<std::size_t>(label) - 1].volume += cells * frame_.cell_volume();
     };
     for (std::size_t i = 0; i < air_.size(); ++i) {
-        if (state.cells[i] == Cell::solid || surface_.phi[i] < near) continue;
+        const bool is_closed = state.cells[i] == Cell::solid;
+        if (is_closed ? closed_.empty() || !closed_[i] : surface_.phi[i] < near) continue;
         const Index<D> I = frame_.index_of(i);
-        const real air = air_in(I);
+        const real air = is_closed ? surface_.open_part(I) : air_in(I);
         if (label_[i] != no_air) {
             air_[i] = air;
             add(label_[i], air);
             if (label_[i] > open_air) pockets_[static_cast<std::size_t>(label_[i]) - 1].capacity += capacity(I);
         } else if (air > thin_air) {
-            std::map<int, real> beside = air_beside(state, I, 1);
-            if (beside.empty()) beside = air_beside(state, I, 2);
+            std::map<int, real> beside = is_closed ? labels_around(frame_, label_, I) : air_beside(state, I, 1);
+            if (!is_closed && beside.empty()) beside = air_beside(state, I, 2);
             real all = 0;
             for (const auto& [label, count] : beside) all += count;
             for (const auto& [label, count] : beside) add(label, air * count / all);

@@ -43,13 +43,11 @@ real glass_error(const RunRecord& run, const Reference& ref) {
     return std::abs(sum / count / ref.number("volume") - 1);
 }
 
-/// From the middle of the run to its end.
-real late_drift(const RunRecord& run, const Reference&) {
+/// From the time at which the rim closes the air to the end of the run.
+real volume_lost(const RunRecord& run, const Reference&) {
     const Curve volume = run.series("largest_pocket_volume");
-    const real middle = volume.y[volume.size() / 2];
-    real most = 0;
-    for (std::size_t i = volume.size() / 2; i < volume.size(); ++i) most = std::max(most, std::abs(volume.y[i] / middle - 1));
-    return most;
+    const auto first = std::find_if(volume.y.begin(), volume.y.end(), [](real y) { return y > 0; });
+    return first == volume.y.end() ? 1 : std::abs(volume.y.back() / *first - 1);
 }
 
 }  // namespace
@@ -76,10 +74,10 @@ std::vector<Metric> air_metrics() {
          .unit = "",
          .doc = "Relative error of the mean volume of the largest pocket of air over the last half of the run, to that at rest.",
          .measure = glass_error},
-        {.name = "glass.late_drift",
+        {.name = "glass.volume_lost",
          .unit = "",
-         .doc = "Largest relative change of the volume of the largest pocket of air in the last half of the run.",
-         .measure = late_drift},
+         .doc = "Relative change of the volume of the largest pocket of air from the time at which it was enclosed to the end.",
+         .measure = volume_lost},
     };
 }
 
