@@ -38,7 +38,7 @@ std::string label(std::string name) {
     return name;
 }
 
-std::string of_corrections(const std::vector<Integral>& list) {
+std::string of_list(const std::vector<Integral>& list) {
     std::string text;
     for (const Integral& i : list)
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", label(i.name), with_unit(i.value, i.unit == "1" ? "" : i.unit));
@@ -73,7 +73,8 @@ std::string balance_text(const sim::BalanceOfRun& run, const TimeSpent& spent) {
     if (!std::isnan(run.divergence))
         text += line("divergence", fmt::format("at most {:.2g} 1/s: a cell gains or loses at most {:.2g} of its volume in a step",
                                                run.divergence, run.cell_change));
-    if (!run.corrected.empty()) text += line("corrected", of_corrections(run.corrected));
+    if (!run.corrected.empty()) text += line("corrected", of_list(run.corrected));
+    if (!run.air.empty()) text += line("air", of_list(run.air));
     if (!run.thin.empty()) text += line("solids", of_thin(run.thin));
     const double factor = real_time_factor(run, spent);
     return text + line("time", fmt::format("{:.3g} s of steps, {:.3g} s of writing; {}", spent.stepping, spent.writing,
@@ -86,6 +87,7 @@ std::string balance_json(const sim::BalanceOfRun& run, const TimeSpent& spent) {
     for (const sim::Balanced& b : run.quantities) j["quantities"][b.name] = json_of(b);
     if (!std::isnan(run.divergence)) j["max_divergence"] = run.divergence, j["max_cell_volume_change"] = run.cell_change;
     for (const Integral& i : run.corrected) j["corrected"][i.name] = i.value;
+    for (const Integral& i : run.air) j["enclosed_air"][i.name] = i.value;
     for (const auto& [solid, cells] : run.thin) j["solids_under_resolved"][solid] = cells;
     j["stepping_seconds"] = spent.stepping, j["writing_seconds"] = spent.writing;
     j["real_time_factor"] = real_time_factor(run, spent);

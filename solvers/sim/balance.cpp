@@ -133,6 +133,14 @@ void warn_of_energy(const Balanced& b, std::vector<std::string>& warnings) {
                     percent(*b.unexplained), b.start, b.unit, *b.highest, b.unit));
 }
 
+/// Pockets of enclosed air.
+std::vector<Integral> enclosed_air(const std::vector<Integral>& end) {
+    std::vector<Integral> list;
+    for (const char* name : {"air_pockets", "largest_pocket_volume", "largest_pocket_pressure"})
+        if (const Integral* now = find(end, name)) list.push_back(*now);
+    return list;
+}
+
 /// Corrections applied to the fluid, counted since the start.
 std::vector<Integral> corrections(const std::vector<Integral>& start, const std::vector<Integral>& end) {
     std::vector<Integral> list;
@@ -226,6 +234,7 @@ BalanceOfRun Balance::of_run(const Simulation& simulation) const {
                      .to = simulation.time(),
                      .quantities = {},
                      .corrected = corrections(start_, end),
+                     .air = enclosed_air(end),
                      .divergence = divergence_,
                      .cell_change = cell_change_,
                      .thin = {},

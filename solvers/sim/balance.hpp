@@ -26,6 +26,7 @@ struct BalanceOfRun {
     real from = 0, to = 0;  // [s]
     std::vector<Balanced> quantities;
     std::vector<Integral> corrected;                 // corrections: particles moved to a wall, reseeded markers, ...
+    std::vector<Integral> air;                       // at the end: pockets, volume and pressure of the largest; empty without enclosed air
     real divergence = not_applicable;                // maximum over the steps [1/s]
     real cell_change = not_applicable;               // largest relative volume error of a cell in one step
     std::vector<std::pair<std::string, real>> thin;  // solids thinner than two cells, and their thickness in cells

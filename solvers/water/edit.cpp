@@ -6,10 +6,11 @@
 
 namespace weir::water {
 
-/// Not editable with bodies, whose motion is coupled to the water's, nor with heat, whose balance would not include the edit.
+/// Not editable with bodies, whose motion is coupled to the water's, nor with heat or enclosed air, whose balance would not include the
+/// edit.
 template <int D>
 std::vector<EditableField> Water<D>::editable() {
-    if (bodies_ || heat_) return {};
+    if (bodies_ || heat_ || options_.encloses_air) return {};
     EditableField velocity{"", "velocity", {}};
     for (int a = 0; a < D; ++a) velocity.data.emplace_back(state_.u[a].values());
     keep_faces();
@@ -53,7 +54,7 @@ void Water<D>::take_velocity() {
 /// velocity of its markers.
 template <int D>
 bool Water<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, std::span<const Vec<3>> velocity) {
-    if (set != marker_set_name || bodies_ || heat_) return false;
+    if (set != marker_set_name || bodies_ || heat_ || options_.encloses_air) return false;
     Markers<D> added(true, false);
     for (std::size_t i = 0; i < at.size(); ++i) {
         Vec<D> x, u;
@@ -75,7 +76,7 @@ bool Water<D>::add_particles(std::string_view set, std::span<const Vec<3>> at, s
 /// Removed markers reduce the volume balance by their share. A cell that loses its last marker becomes air.
 template <int D>
 bool Water<D>::remove_particles(std::string_view set, std::span<const unsigned char> gone) {
-    if (set != marker_set_name || bodies_ || heat_) return false;
+    if (set != marker_set_name || bodies_ || heat_ || options_.encloses_air) return false;
     const std::size_t all = markers_.count();
     std::vector<std::size_t> lost;
     for (std::size_t p = 0; p < all; ++p)

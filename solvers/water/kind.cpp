@@ -25,6 +25,9 @@ WaterOptions::WaterOptions(const scene::Scene& scene) {
     reseed = scheme.flag("reseed");
     seed = static_cast<std::uint64_t>(scheme.integer("seed"));
     volume_control = scene.effect("volume_control") != nullptr;
+    encloses_air = scene.root().text_or("air", "empty") == "enclosed";
+    if (encloses_air && scene.has("enclosed_gas"))
+        enclosed_gas = GasLaw{scene.number("enclosed_gas.pressure"), scene.number("enclosed_gas.exponent")};
     if (const auto* tension = scene.effect("surface_tension")) sigma = tension->number("sigma");
     if (const auto* friction = scene.effect("viscosity")) viscosity = friction->text("scheme") == "implicit" ? 1 : 0.5;
 }
@@ -59,8 +62,38 @@ Key scheme_keys() {
             PoissonChoice::key()}};
 }
 
+Key air_key() {
+    return {.name = "air",
+            .type = Type::choice,
+            .doc =
+                "Air: empty (p = 0 on the surface), if absent; enclosed: air that touches no open side and no emitter keeps its volume, "
+                "or has p V^exponent = const with `enclosed_gas`; flow: only in the solver two_phase.",
+            .choices = {"empty", "enclosed", "flow"}};
+}
+
+Key enclosed_gas_key() {
+    return {.name = "enclosed_gas",
+            .type = Type::table,
+            .doc = "Air of pockets that can be squeezed, for air = \"enclosed\"; without this table it is incompressible.",
+            .keys = {{.name = "pressure",
+                      .type = Type::number,
+                      .doc = "Absolute pressure of the open air, and of air when it is enclosed.",
+                      .unit = "Pa",
+                      .required = true,
+                      .min = 0,
+                      .min_open = true,
+                      .example = "pressure = 101325"},
+                     {.name = "exponent",
+                      .type = Type::number,
+                      .doc = "Exponent: 1.4 for air without exchange of heat, 1 at constant temperature.",
+                      .fallback = 1.4,
+                      .min = 1}},
+            .example = "enclosed_gas = { pressure = 101325, exponent = 1.4 }"};
+}
+
 /// Rejects keys of a scene that are not supported in parallel.
 void check_parallel(const scene::Scene& scene) {
+    if (scene.root().text_or("air", "empty") == "enclosed") scene::one_process_only(scene, "air", "pockets of air are");
     scene::refuse_bodies(scene);
     if (LiquidHeat<2>::named(scene)) scene::one_process_only(scene, "substance", "melting and boiling of a substance are");
     scene::refuse_brush(scene);
@@ -79,6 +112,8 @@ scene::SolverKind kind() {
                    rigid::probe_key(),
                    scheme_keys(),
                    initial_keys(),
+                   air_key(),
+                   enclosed_gas_key(),
                    scene::surface_key_of_level_set(true)};
     Key sides{.name = "sides", .type = Type::table};
     for (const char* axis : {"x", "y", "z"})

@@ -1,6 +1,7 @@
 #include "water/pressure.hpp"
 
 #include "free_surface/marker_lanes.hpp"
+#include "mac/grid/closed_volume.hpp"
 
 #include <algorithm>
 
@@ -41,6 +42,7 @@ void SurfacePressure<D>::set_surface(const LevelSet<D>& surface, const Grid<std:
     find_liquid(surface, closed);
     refresh_liquid();
     state.cells = A_.cells;
+    if (pockets_) add_pockets(state);
     for (int a = 0; a < D; ++a) set_weights(surface, state, a);
     refresh(A_.weight[D - 1], frame_.periodic(D - 1));  // those above the last cells
 }
@@ -80,7 +82,8 @@ void SurfacePressure<D>::find_liquid(const LevelSet<D>& surface, const Grid<std:
                                                          [](const Segment& extent) { return extent.begin < extent.end; })) > 0;
 }
 
-/// Face weights: the open fraction between liquid cells, times 1/θ where the surface cuts the line between the centres.
+/// Face weights: the open fraction between liquid cells, times 1/θ where the surface cuts the line between the centres, or times the weight
+/// of enclosed air on both sides.
 template <int D>
 void SurfacePressure<D>::set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a) {
     real* weight = A_.weight[static_cast<std::size_t>(a)].data();
@@ -90,19 +93,21 @@ void SurfacePressure<D>::set_weights(const LevelSet<D>& surface, const MacState<
         a,
         [&](std::size_t face, std::size_t cell, int count) {
             for (std::size_t end = face + static_cast<std::size_t>(count); face < end; ++face, ++cell) {
-                const bool above = A_.cells[cell] == Cell::fluid, below = A_.cells[cell - stride] == Cell::fluid;
-                weight[face] = above != below ? cut_weight(surface, cell - stride, cell) : above ? 1 : 0;
+                weight[face] = inner_weight(surface, state, cell - stride, cell);
                 if (open) weight[face] *= open[face];
             }
         },
         [&](const Index<D>& I, std::size_t face) { weight[face] = side_weight(surface, state, a, I); });
 }
 
-/// 1/θ between a liquid cell and a cell without liquid; 0 if that one is solid.
+/// 1 between liquid cells, 1/θ between a liquid cell and one without liquid, 0 if that one is solid.
 template <int D>
-real SurfacePressure<D>::cut_weight(const LevelSet<D>& surface, std::size_t lower, std::size_t upper) const {
-    if (A_.cells[lower] != Cell::fluid) std::swap(lower, upper);
-    return A_.cells[upper] == Cell::solid ? 0 : std::min(1 - surface.phi[upper] / surface.phi[lower], largest_cut_);
+real SurfacePressure<D>::inner_weight(const LevelSet<D>& surface, const MacState<D>& state, std::size_t lower, std::size_t upper) const {
+    const bool below = state.cells[lower] == Cell::fluid, above = state.cells[upper] == Cell::fluid;
+    if (below && above) return 1;
+    if (!below && !above) return A_.cells[lower] == Cell::fluid && A_.cells[upper] == Cell::fluid ? gas_weight_ : 0;
+    if (!below) std::swap(lower, upper);
+    return state.cells[upper] == Cell::solid ? 0 : std::min(1 - surface.phi[upper] / surface.phi[lower], largest_cut_);
 }
 
 /// On a side: closed, or p = 0 on the side itself, half a cell away. On a periodic boundary: as inside.
@@ -111,10 +116,9 @@ real SurfacePressure<D>::side_weight(const LevelSet<D>& surface, const MacState<
     const int end = I[a] == 0 ? 0 : 1;
     if (!frame_.periodic(a) && !state.sides.open(a, end)) return 0;
     const std::size_t lower = A_.cells.linear(frame_.near(I, a, -1)), upper = A_.cells.linear(frame_.near(I, a, 0));
-    const bool below = A_.cells[lower] == Cell::fluid, above = A_.cells[upper] == Cell::fluid;
-    if (!frame_.periodic(a)) return below ? 2 : 0;
+    if (!frame_.periodic(a)) return A_.cells[lower] == Cell::fluid ? 2 : 0;
     const real open = state.solid.any() ? state.solid.open[static_cast<std::size_t>(a)](I) : 1;
-    return open * (above != below ? cut_weight(surface, lower, upper) : above ? 1 : 0);
+    return open * inner_weight(surface, state, lower, upper);
 }
 
 /// σ κ where the surface cuts the line between two cells.
@@ -125,19 +129,22 @@ real SurfacePressure<D>::surface_pressure(const LevelSet<D>& surface, std::size_
     return sigma * ((1 - theta) * curvature[liquid] + theta * curvature[air]);
 }
 
-/// The contribution of p = σ κ on the surface to the right-hand side of a liquid cell.
+/// The contribution of the jump σ κ on the surface to the right-hand side of a liquid cell, or of a cell of enclosed air.
 template <int D>
-real SurfacePressure<D>::surface_tension(const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature, const Index<D>& I) const {
+real SurfacePressure<D>::surface_tension(const MacState<D>& state, const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature,
+                                         const Index<D>& I) const {
+    const bool liquid = state.cells(I) == Cell::fluid;
     real sum = 0;
     for (int a = 0; a < D; ++a)
         for (const int by : {-1, 1}) {
             Index<D> J = I;
-            if (!frame_.step(J, a, by) || A_.cells(J) != Cell::air) continue;
+            if (!frame_.step(J, a, by) || state.cells(J) != (liquid ? Cell::air : Cell::fluid)) continue;
             const Index<D> face = by < 0 ? I : I + e<D>(a);
+            const std::size_t inside = A_.cells.linear(liquid ? I : J), outside = A_.cells.linear(liquid ? J : I);
             sum += A_.axis_weight[a] * A_.weight[static_cast<std::size_t>(a)](face) *
-                   surface_pressure(surface, A_.cells.linear(I), A_.cells.linear(J), sigma, curvature);
+                   surface_pressure(surface, inside, outside, sigma, curvature);
         }
-    return sum;
+    return liquid ? sum : -sum;
 }
 
 template <int D>
@@ -152,8 +159,9 @@ void SurfacePressure<D>::set_rhs(const MacState<D>& state, const LevelSet<D>& su
         flux_divergence_row(state, I, extent.end - extent.begin, b + extent.begin);
         for (int i = extent.begin; i < extent.end; ++i) b[i] *= scale;
         for (; curvature && I[0] < extent.end; ++I[0])
-            if (A_.cells(I) == Cell::fluid) b[I[0]] += surface_tension(surface, sigma, *curvature, I);
+            if (A_.cells(I) == Cell::fluid) b[I[0]] += surface_tension(state, surface, sigma, *curvature, I);
     });
+    add_gas_sources(state.rho, dt);
 }
 
 template <int D>
@@ -184,6 +192,20 @@ const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
     return solver_->solve(state.p, b_);
 }
 
+/// Where solids change the volume of liquid and incompressible air without outflow, no pressure can balance it
+/// (mac/grid/closed_volume.hpp). `cells`: those of the state, with pockets of air as fluid.
+template <int D>
+static void require_room(MacState<D>& state, Grid<Cell, D>& cells, const SolidPlacement<D>& solids, real divergence) {
+    std::swap(state.cells, cells);
+    try {
+        mac::require_room(state, solids, divergence);
+    } catch (...) {
+        std::swap(state.cells, cells);
+        throw;
+    }
+    std::swap(state.cells, cells);
+}
+
 template <int D>
 const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                    const Grid<real, D>* curvature, BodiesInFlow<D>* bodies, SolidPlacement<D>* solids) {
@@ -191,6 +213,8 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         if (bodies) bodies->solve(state, *solids, dt, nullptr, tolerance_, nullptr);
         return nothing_to_do_;
     }
+    set_gas_velocity(state);
+    couple_gas(state.rho, dt);
     set_rhs(state, surface, dt, sigma, curvature);
     if (frame_.own().distributed() && !shares_planes_) {
         gather(A_.cells);
@@ -199,7 +223,9 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
     solver_->setup(A_);
     const poisson::Report& report =  // the last pressure is the initial guess
         bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
+    set_pressure_level(state);
     subtract(state, surface, dt, sigma, curvature, state.u.face);
+    if (pockets_ && !pockets_->law() && solids) require_room(state, A_.cells, *solids, max_divergence(state));
     return report;
 }
 
@@ -207,8 +233,10 @@ template <int D>
 const poisson::Report& SurfacePressure<D>::project_again(MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                                          const Grid<real, D>* curvature) {
     if (!has_liquid_) return nothing_to_do_;
+    set_gas_velocity(state);
     set_rhs(state, surface, dt, sigma, curvature);
     const poisson::Report& report = solve(state);
+    set_pressure_level(state);
     subtract(state, surface, dt, sigma, curvature, state.u.face);
     return report;
 }
@@ -260,7 +288,7 @@ void SurfacePressure<D>::subtract_surface_gradient(const MacState<D>& state, con
         const auto at = static_cast<std::size_t>(a), stride = static_cast<std::size_t>(A_.cells.stride(a));
         const real scale = dt / state.rho * frame_.inv_h[a];
         const auto subtract = [&](std::size_t face, std::size_t lower, std::size_t upper) {
-            const bool below = A_.cells[lower] == Cell::fluid, above = A_.cells[upper] == Cell::fluid;
+            const bool below = state.cells[lower] == Cell::fluid, above = state.cells[upper] == Cell::fluid;
             if (below == above || A_.weight[at][face] == 0) return;
             const real w = state.solid.any() ? per_open(A_.weight[at][face], state.solid.open[at][face]) : A_.weight[at][face];
             const real p = surface_pressure(surface, below ? lower : upper, below ? upper : lower, sigma, curvature);
@@ -291,7 +319,7 @@ real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
             flux_divergence_row(state, frame_.index_of(at), count, divergence.data());
             for (int i = 0; i < count; ++i) {
                 const real d = std::abs(divergence[static_cast<std::size_t>(i)]);
-                if (A_.cells[at + static_cast<std::size_t>(i)] == Cell::fluid && !(d <= largest)) largest = d;
+                if (state.cells[at + static_cast<std::size_t>(i)] == Cell::fluid && !(d <= largest)) largest = d;
             }
             if (std::isnan(largest)) break;
         }
@@ -306,7 +334,7 @@ real SurfacePressure<D>::max_divergence(const MacState<D>& state) const {
 
 template <int D>
 std::size_t SurfacePressure<D>::bytes() const {
-    std::size_t total = A_.cells.bytes() + b_.bytes() + liquid_.bytes() + solver_->bytes();
+    std::size_t total = A_.cells.bytes() + b_.bytes() + liquid_.bytes() + solver_->bytes() + pocket_bytes();
     for (const auto& weight : A_.weight) total += weight.bytes();
     return total;
 }

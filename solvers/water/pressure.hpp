@@ -3,13 +3,16 @@
 // enter by open face fractions (Batty, Bertails & Bridson 2007). A cell is liquid when φ < −thinnest h, so θ ≥ thinnest / (1 + thinnest)
 // without clamping. A plane surface, at any height and slope, has exactly the hydrostatic p.
 #pragma once
+#include "core/solver.hpp"
 #include "free_surface/level_set.hpp"
 #include "mac/bodies/bodies_in_flow.hpp"
 #include "mac/grid/projection.hpp"
 #include "mac/grid/state.hpp"
-#include "poisson/poisson.hpp"
+#include "poisson/zero_coupling.hpp"
+#include "water/air_pockets.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace weir::water {
 
@@ -23,6 +26,15 @@ class SurfacePressure {
 public:
     SurfacePressure() = default;
     SurfacePressure(const Frame<D>& frame, const MacState<D>& state, const PoissonChoice& choice);
+    /// From now on enclosed air resists (air_pockets.hpp); without this call all air has p = 0. `acceleration`: that of the waves of a few
+    /// cells [m/s²], from which the time follows in which incompressible gas gets back lost volume.
+    void enclose_air(std::unique_ptr<AirPockets<D>> pockets, real acceleration);
+    /// Stores the velocity of the enclosed air after the projection of a step.
+    void keep_gas_velocity(const MacState<D>& state);
+    /// Number of pockets; volume of the largest, and its pressure: absolute where the gas can be squeezed, otherwise relative to open air.
+    std::vector<Integral> pocket_integrals(const MacState<D>& state) const;
+    void save(Checkpoint& to) const;
+    void restore(const Checkpoint& from);
 
     /// Finds the liquid cells and the matrix from φ and the solids; also sets state.cells. In parallel each rank does its own planes with
     /// distributed storage, otherwise all.
@@ -50,16 +62,25 @@ public:
     std::size_t bytes() const;
 
 private:
+    void add_pockets(const MacState<D>& state);
+    template <class F>
+    void for_each_gas_face(const MacState<D>& state, int a, F&& f) const;
+    void set_gas_velocity(MacState<D>& state) const;
+    void couple_gas(real rho, real dt);
+    void add_gas_sources(real rho, real dt);
+    void set_pressure_level(MacState<D>& state) const;
+    std::size_t pocket_bytes() const;
     const poisson::Report& solve(MacState<D>& state);
     void refresh_liquid();
     void find_liquid(const LevelSet<D>& surface, const Grid<std::uint8_t, D>& closed);
     void set_weights(const LevelSet<D>& surface, const MacState<D>& state, int a);
     real side_weight(const LevelSet<D>& surface, const MacState<D>& state, int a, const Index<D>& I) const;
-    real cut_weight(const LevelSet<D>& surface, std::size_t lower, std::size_t upper) const;
+    real inner_weight(const LevelSet<D>& surface, const MacState<D>& state, std::size_t lower, std::size_t upper) const;
     real surface_pressure(const LevelSet<D>& surface, std::size_t liquid, std::size_t air, real sigma,
                           const Grid<real, D>& curvature) const;
     void set_rhs(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma, const Grid<real, D>* curvature);
-    real surface_tension(const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature, const Index<D>& I) const;
+    real surface_tension(const MacState<D>& state, const LevelSet<D>& surface, real sigma, const Grid<real, D>& curvature,
+                         const Index<D>& I) const;
     void subtract_gradient(const MacState<D>& state, real dt, std::array<Grid<real, D>, D>& u) const;
     void subtract_surface_gradient(const MacState<D>& state, const LevelSet<D>& surface, real dt, real sigma,
                                    const Grid<real, D>& curvature, std::array<Grid<real, D>, D>& u) const;
@@ -75,6 +96,12 @@ private:
     real tolerance_ = 0;
     real h2_ = 0;           // h of axis 0, squared: the scale of the matrix
     real largest_cut_ = 0;  // largest 1/θ, along the longest edge of a cell
+
+    std::unique_ptr<AirPockets<D>> pockets_;     // nullptr where the scene names no enclosed air
+    std::array<Grid<real, D>, D> gas_velocity_;  // u of enclosed air after the last projection, at least on its faces
+    Grid<real, D> zero_;                         // coupling of squeezable gas to p = 0
+    real restoring_time_ = 0;                    // √(h/g) [s]
+    real gas_weight_ = 0;                        // between cells of enclosed air
 };
 
 template <int D>

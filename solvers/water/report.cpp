@@ -45,6 +45,7 @@ std::vector<Integral> Water<D>::integrals() const {
     if (keeps_volume_) list[0].value = volume_.volume();
     list.insert(list.begin() + 2, {"marker_volume", list[0].unit, markers_.volume * count});
     list.push_back({"markers", "", count});
+    for (auto& integral : pressure_.pocket_integrals(state_)) list.push_back(std::move(integral));
     if (options_.volume_control) list.push_back({"volume_shift", "m", volume_shift_});
     if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (heat_)
@@ -64,6 +65,7 @@ void Water<D>::save(Checkpoint& to) const {
     surface_.save(to);
     leapfrog_.save(to);
     volume_.save(to);
+    pressure_.save(to);
     const auto [first, last] = markers_.own(frame_);
     const std::vector<std::size_t> begins = begins_of_ranks(last - first);
     int at = 0;
@@ -121,6 +123,7 @@ void Water<D>::restore(const Checkpoint& from) {
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !own().distributed();
     synchronize();
+    pressure_.restore(from);
     pressure_.set_surface(surface_, closed_, state_);
     if (heat_) heat_->restore(from, state_);
     mark_liquid_faces();

@@ -25,6 +25,7 @@ StepReport Water<D>::step(real dt) {
     momentum_to_faces(dt);                              // u* from the markers, or D u/Dt = 0 on the grid
     forces(kick);                                       // u* += dt f, (I − dt ν∇²) u* = ...
     const poisson::Report poisson = project(dt, kick);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
+    pressure_.keep_gas_velocity(state_);
     const real divergence = pressure_.max_divergence(state_);
     mac::require_room(state_, solids_, divergence);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid

@@ -54,6 +54,8 @@ struct WaterOptions {
     real sigma = 0;      // surface tension [N/m]; 0: no curvature is computed
     real viscosity = 0;  // θ of the viscous solve: ½ Crank–Nicolson, 1 implicit; 0: no viscosity
     bool volume_control = false;
+    bool encloses_air = false;           // air = "enclosed"
+    std::optional<GasLaw> enclosed_gas;  // none: incompressible
     explicit WaterOptions(const scene::Scene& scene);
 };
 
@@ -108,6 +110,8 @@ private:
     // Start (start.cpp)
     void read_emitters(const scene::Scene& scene);
     void refuse_buried_emitters(const scene::Scene& scene) const;
+    real wave_acceleration() const;
+    void refuse_enclosed_air(const scene::Scene& scene) const;
     void fill_with_liquid(const scene::Scene& scene);
     void seed_markers();
     void couple_friction(const scene::Scene& scene);

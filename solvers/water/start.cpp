@@ -33,12 +33,12 @@ Water<D>::Water(const scene::Scene& scene, const Partition& partition)
       brush_forcing_(geometry::make_brush(scene, kinds_of_brush(scene))) {
     if (brush_forcing_) effects_.add("hand", brush_effect<D>(brush_forcing_, Stage::force));
     refuse_flat_cells(scene, frame_);
+    refuse_enclosed_air(scene);
     markers_ = all_markers_ = Markers<D>(options_.transfer != Transfer::grid, options_.transfer == Transfer::apic);
     surface_ = LevelSet<D>(frame_, static_cast<int>(std::ceil(options_.cfl)));
     volume_ = LiquidVolume<D>(frame_);
     pressure_ = SurfacePressure<D>(frame_, state_, options_.poisson);
-    const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);  // σ k²/ρ of a wave of ten cells
-    extrapolate_ = Extrapolation<D>(frame_, norm(gravity_) + capillary);
+    extrapolate_ = Extrapolation<D>(frame_, wave_acceleration());
     sums_ = FaceSums<D>(frame_.cells);
     for (int a = 0; a < D; ++a) known_[static_cast<std::size_t>(a)] = Grid<std::uint8_t, D>(state_.u[a].extent());
     before_ = state_.u;
@@ -72,6 +72,13 @@ Water<D>::Water(const scene::Scene& scene, const Partition& partition)
     extend_velocity(0);
     seed_markers();
     whole_ = !own().distributed();
+}
+
+/// Gravity and surface tension in a wave of ten cells, σ k²/ρ [m/s²].
+template <int D>
+real Water<D>::wave_acceleration() const {
+    const real h = frame_.h_min(), capillary = 0.4 * options_.sigma / (state_.rho * h * h);
+    return norm(gravity_) + capillary;
 }
 
 /// The initial pressure for friction: hydrostatic, zero in the highest liquid cell.
@@ -134,6 +141,26 @@ void Water<D>::refuse_buried_emitters(const scene::Scene& scene) const {
     }
 }
 
+/// Rejects models of air that this solver does not have, and what enclosed air does not support.
+template <int D>
+void Water<D>::refuse_enclosed_air(const scene::Scene& scene) const {
+    if (scene.root().text_or("air", "empty") == "flow")
+        scene.refuse("air", "mac_water does not compute the flow of air; the solver \"two_phase\" does",
+                     "solver = \"two_phase\" with gas = { density = 1.2 }, or air = \"enclosed\"");
+    if (!options_.encloses_air) {
+        if (scene.has("enclosed_gas"))
+            scene.refuse("enclosed_gas", "enclosed_gas has no effect with air = \"empty\"", "air = \"enclosed\"");
+        return;
+    }
+    const auto without = [&](const std::string& key) {
+        scene.refuse("air", "air = \"enclosed\" is not supported with " + key, "air = \"empty\", or the scene without " + key);
+    };
+    if (bodies_) without("bodies");
+    if (LiquidHeat<D>::named(scene)) without("substance");
+    if (brush_forcing_) without("effects.hand");
+    if (options_.poisson.method == "dct") without("scheme.poisson.method = \"dct\"");
+}
+
 template <int D>
 void Water<D>::fill_with_liquid(const scene::Scene& scene) {
     const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
@@ -149,6 +176,10 @@ void Water<D>::fill_with_liquid(const scene::Scene& scene) {
     // beside a free body the surface depends on extrapolation, and corrections of it would act on the body
     keeps_volume_ = !bodies_ && options_.sigma == 0 && !options_.volume_control;
     volume_.start(surface_, state_);
+    if (options_.encloses_air)
+        pressure_.enclose_air(
+            std::make_unique<AirPockets<D>>(frame_, options_.enclosed_gas, surface_, closed_, keeps_volume_ ? &volume_.part() : nullptr),
+            wave_acceleration());
     if (!shapes.empty() && volume_target_ == 0) refuse_no_volume<D>(scene, *geometry::unite<D>(shapes), frame_);
     pressure_.set_surface(surface_, closed_, state_);
 }

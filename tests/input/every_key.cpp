@@ -177,7 +177,8 @@ std::map<std::string, Said> everything() {
             Lines{inflow + " } }", emitter + " } ]", "scheme = { transfer = \"flip\", flip_blend = 0.9, trace = \"rk2\" }", hand,
                   "effects.volume_control = {}", rolls, "scheme = { reseed = true, seed = 3 }", "time.cfl = 0.4",
                   "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
-                  "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1"}),
+                  "effects.viscosity = { scheme = \"implicit\" }\nfluid.viscosity = 1",
+                  "air = \"enclosed\"\nenclosed_gas = { pressure = 1e5, exponent = 1.4 }"}),
         endless_bodies, all(of_surfaces, Lines{of_level_set, wet_mesh})};
     said["two_phase"] = {
         Lines{"gas = { density = 0.1 }", liquid[0]},

@@ -30,6 +30,7 @@ std::vector<Metric> boiling_metrics();
 std::vector<Metric> capillary_metrics();
 std::vector<Metric> flow_past_metrics();
 std::vector<Metric> everyday_metrics();
+std::vector<Metric> air_metrics();
 std::vector<Metric> error_bars_metrics();  // of validation/uncertainty
 
 }  // namespace weir::validation

@@ -39,7 +39,7 @@ struct DerivedRows {
         const int n = problem.extent()[0];
         to.resize(n);
         const std::uint8_t* c = problem.cells(problem.row(q, j));
-        if (problem.weighted() && problem.is_amid_fluid(q, j)) return amid_fluid(q, j, c, to);
+        if (problem.weighted() && problem.is_amid_fluid(q, j)) return with_zero(q, j, c, amid_fluid(q, j, c, to), to);
         float* zero = to.row[D].data();
         std::uint8_t* is_fluid = to.fluid.data();
         for (int i = 0; i < n; ++i) {
@@ -54,10 +54,17 @@ struct DerivedRows {
         for (std::size_t a = 0; a < D; ++a) out.face[a] = to.row[a].data();
         out.zero = zero;
         out.fluid = is_fluid;
-        return out;
+        return with_zero(q, j, c, out, to);
     }
 
 private:
+    /// Adds the problem's further couplings to p = 0.
+    FaceRow<D> with_zero(int q, int j, const std::uint8_t* c, const FaceRow<D>& row, RowBuffers<D>& to) const {
+        const real* more = problem.zero(problem.row(q, j));
+        float* zero = to.row[D].data();
+        for (int i = 0; more && i < problem.extent()[0]; ++i) zero[i] += c[i] == fluid ? static_cast<float>(more[i]) : 0.0f;
+        return row;
+    }
     /// With fluid on all sides only the ends of the row may couple to anything else.
     FaceRow<D> amid_fluid(int q, int j, const std::uint8_t* c, RowBuffers<D>& to) const {
         const int n = problem.extent()[0];

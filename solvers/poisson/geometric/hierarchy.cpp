@@ -132,10 +132,11 @@ std::vector<Level<D>> levels_below(Level<D> finest) {
 template <int D>
 bool Hierarchy<D>::plan(const Natural<D>& problem) {
     Level<D> finest = finest_of<D>(problem.extent(), problem.periodic(), problem.axis_weight(), !problem.weighted());
+    finest.has_zero = problem.has_zero();
     const Partition cut = problem.own().distributed() ? problem.own().partition() : Partition{};
     const auto same = [&](const Level<D>& other) {
         return other.at.n == finest.at.n && other.at.periodic == finest.at.periodic && other.plain_weight == finest.plain_weight &&
-               other.by_count == finest.by_count && other.cut == cut;
+               other.by_count == finest.by_count && other.has_zero == finest.has_zero && other.cut == cut;
     };
     if (!levels_.empty() && same(levels_.front())) return true;
     levels_ = levels_below(std::move(finest));
@@ -177,7 +178,7 @@ void Hierarchy<D>::lay_out() {
             Level<D>& level = levels_[l];
             const std::size_t packed = level.at.entries(), natural = level.cells();
             const auto vector = [&](auto*& p) { piece(level, p, packed, static_cast<std::size_t>(level.at.stride + lanes)); };
-            for (auto* list : {&level.u, &level.r, level.by_count ? nullptr : &level.dinv})
+            for (auto* list : {&level.u, &level.r, level.by_count ? nullptr : &level.dinv, level.has_zero ? &level.packed_zero : nullptr})
                 if (list != nullptr)
                     for (auto& p : *list) vector(p);
             if (level.by_count)

@@ -97,6 +97,9 @@ struct Level {
     Coloured<std::uint8_t> count{};
     alignas(64) std::array<float, lanes> inverse{};  // 1 / (weight × count), 0 for 0
     Coloured<float> dinv{};
+    // further couplings to p = 0 (zero_coupling.hpp), on the finest level of a problem that has them
+    bool has_zero = false;
+    Coloured<float> packed_zero{};
     // faces in the order of the red cells: below and above along each axis; unused with by_count
     std::array<float*, 2 * D> weight{};
     std::vector<std::uint8_t> plain;  // rows whose fluid cells have uniform weights only

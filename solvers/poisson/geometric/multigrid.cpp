@@ -5,20 +5,21 @@
 #include "poisson/geometric/two_phase.hpp"
 #include "poisson/matrix/algebraic_multigrid.hpp"
 #include "poisson/matrix/conjugate_gradient.hpp"
+#include "poisson/zero_coupling.hpp"
 
 namespace weir::poisson {
 
 namespace {
 
 template <int D>
-class Multigrid final : public Solver<D> {
+class Multigrid final : public Solver<D>, public ZeroCoupling<D> {
 public:
     explicit Multigrid(const Options& options) : options_(options) {}
 
     void setup(const Operator<D>& A) override {
         const Stopwatch watch;
         extent_ = A.cells.extent();
-        problem_.build(A, weir::poisson::shares_planes(method_named("multigrid"), A) ? A.cells.own() : OwnPlanes());
+        problem_.build(A, weir::poisson::shares_planes(method_named("multigrid"), A) ? A.cells.own() : OwnPlanes(), zero_);
         algebraic_.reset();
         geometric_fits_ = geometric_.setup(problem_);
         if (!geometric_fits_) set_up_algebraic();
@@ -71,6 +72,8 @@ public:
         return &report_;
     }
 
+    void couple_to_zero(const Grid<real, D>* z) override { zero_ = z; }
+
     void set_tolerance(real tolerance) override {
         options_.tolerance = tolerance;
         if (algebraic_ != nullptr) algebraic_->set_tolerance(tolerance);
@@ -96,6 +99,7 @@ private:
     }
     void set_up_algebraic() {
         algebraic_ = std::make_unique<ConjugateGradient<D, AlgebraicMultigrid>>(options_);
+        algebraic_->couple_to_zero(zero_);
         algebraic_->setup(problem_.as_operator());
     }
 
@@ -105,6 +109,7 @@ private:
     GeometricCg<D> geometric_;
     TwoPhase<D> two_phase_;
     bool geometric_fits_ = false;
+    const Grid<real, D>* zero_ = nullptr;
     std::unique_ptr<ConjugateGradient<D, AlgebraicMultigrid>> algebraic_;
     Report report_;
 };

@@ -14,8 +14,9 @@ constexpr auto solid = static_cast<std::uint8_t>(Cell::solid), fluid = static_ca
 }
 
 template <int D>
-void Natural<D>::build(const Operator<D>& A, const OwnPlanes& own) {
+void Natural<D>::build(const Operator<D>& A, const OwnPlanes& own, const Grid<real, D>* zero) {
     n_ = A.cells.extent();
+    zero_ = zero;
     axis_weight_ = A.axis_weight;
     const bool cubic = std::all_of(axis_weight_.begin(), axis_weight_.end(), [&](real w) { return w == axis_weight_[0]; });
     weighted_ = !A.weight[0].empty() || !cubic;
@@ -230,7 +231,7 @@ void Natural<D>::find_closed() {
     }
 }
 
-/// A run is open if any of its cells has an open face to a cell that is not fluid.
+/// A run is open if any of its cells has an open face to a cell that is not fluid, or another coupling to p = 0.
 template <int D>
 void Natural<D>::mark_open() {
     refill_scratch<char>(open_, runs_.size(), 0);
@@ -240,6 +241,7 @@ void Natural<D>::mark_open() {
                 auto& is_open = open_[static_cast<std::size_t>(root_[static_cast<std::size_t>(run - runs_.data())])];
                 if (is_open) continue;
                 const auto* c = cells(row(q, j));
+                if (zero_) is_open = std::any_of(zero(row(q, j)) + run->begin, zero(row(q, j)) + run->end, [](real z) { return z > 0; });
                 for (int side = 0; side < 2; ++side) {
                     const int i = side == 0 ? run->begin - 1 : run->end;
                     const int face = side == 0 ? run->begin : run->end;
@@ -293,8 +295,8 @@ std::size_t Natural<D>::bytes() const {
     return sum + (size_.capacity() + mean_.capacity() + sum_.capacity()) * sizeof(real);
 }
 
-template void Natural<2>::build(const Operator<2>&, const OwnPlanes&);
-template void Natural<3>::build(const Operator<3>&, const OwnPlanes&);
+template void Natural<2>::build(const Operator<2>&, const OwnPlanes&, const Grid<real, 2>*);
+template void Natural<3>::build(const Operator<3>&, const OwnPlanes&, const Grid<real, 3>*);
 template int Natural<2>::neighbour(int, int, int, int) const;
 template int Natural<3>::neighbour(int, int, int, int) const;
 template Operator<2> Natural<2>::as_operator() const;

@@ -18,7 +18,8 @@ template <int D>
 class Natural {
 public:
     /// `own`: the planes that this rank solves for; without a partition every rank solves for all planes, and A must be whole.
-    void build(const Operator<D>& A, const OwnPlanes& own);
+    /// `zero`: further couplings to p = 0 (zero_coupling.hpp), read until the next build; nullptr: none.
+    void build(const Operator<D>& A, const OwnPlanes& own, const Grid<real, D>* zero = nullptr);
 
     /// An operator with the same matrix; in parallel, whole on all ranks.
     Operator<D> as_operator() const;
@@ -26,6 +27,9 @@ public:
     const Index<D>& extent() const { return n_; }
     const OwnPlanes& own() const { return own_; }
     bool weighted() const { return weighted_; }
+    bool has_zero() const { return zero_ != nullptr; }
+    /// The further couplings of a row's cells to p = 0; nullptr: none.
+    const real* zero(int row) const { return zero_ ? zero_->data() + static_cast<std::ptrdiff_t>(row) * n_[0] : nullptr; }
     const Vec<D>& axis_weight() const { return axis_weight_; }
     const std::array<bool, D>& periodic() const { return periodic_; }
     int planes() const { return n_[D - 1]; }
@@ -113,6 +117,7 @@ private:
     PlaneStore<std::uint8_t> cells_, count_;  // count_: open faces of each cell, where all weights are equal
     std::vector<std::uint8_t> wet_;           // amount of fluid in each row
     std::array<PlaneStore<real>, D> faces_;
+    const Grid<real, D>* zero_ = nullptr;
     OwnPlanes own_{};
     PlaneRange planes_{0, 0};  // own_ within the grid
     std::vector<int> run_start_;

@@ -42,6 +42,7 @@ void Natural<D>::residual_row(int q, int j, const real* p, const real* b, real* 
     std::fill(r, r + nx, 0.0);
     for (const Run* run = runs_begin(here); run != runs_end(here); ++run) {
         const real m = mean(*run);
+        const real* z = zero(here);
         if (weighted_) {
 #pragma omp simd
             for (int i = run->begin; i < run->end; ++i) {
@@ -49,6 +50,7 @@ void Natural<D>::residual_row(int q, int j, const real* p, const real* b, real* 
                 for (std::size_t k = 0; k < 2 * (D - 1); ++k) Ap += weight[k][i] * (centre[i] - other[k][i]);
                 r[i] = b[own + i] - m - Ap;
             }
+            for (int i = run->begin; z && i < run->end; ++i) r[i] -= z[i] * centre[i];
         } else {
             const std::uint8_t* count = count_.data() + own;
             std::array<const real*, 2 * (D - 1)> o = other;

@@ -15,7 +15,7 @@ struct RowView {
     std::array<const T*, 2 * D> weight;
     std::array<const std::uint8_t*, 2 * D> beside;
     const std::uint8_t* self;
-    const float* zero;  // other couplings of the cells to p = 0, or nullptr
+    const T* zero;  // other couplings of the cells to p = 0, or nullptr
 };
 
 /// Buffers of one thread, grown as needed.
@@ -62,7 +62,7 @@ RowView<D, float> view(const Level<D>& level, int q, int j, Buffers& buffers) {
 template <int D>
 RowView<D, real> view(const Natural<D>& problem, int q, int j) {
     RowView<D, real> v;
-    v.zero = nullptr;
+    v.zero = problem.zero(problem.row(q, j));
     v.self = problem.cells(problem.row(q, j));
     v.beside[0] = v.self - 1, v.beside[1] = v.self + 1;
     v.weight[0] = problem.faces(0, q, j), v.weight[1] = v.weight[0] + 1;
@@ -113,11 +113,15 @@ void pack_row(Level<D>& level, int q, int j, const RowView<D, T>& v, Buffers& bu
     const std::ptrdiff_t own = at.offset(row);
     float* dinv = buffers.dinv.data();
     for (int i = 0; i < n; ++i) {
-        T diagonal = v.zero != nullptr ? static_cast<T>(v.zero[i]) : 0;
+        T diagonal = v.zero != nullptr ? v.zero[i] : 0;
         for (std::size_t k = 0; k < 2 * D; ++k) diagonal += v.weight[k][i];
         dinv[i] = v.self[i] == is_fluid && diagonal > 0 ? static_cast<float>(1 / diagonal) : 0;
     }
     split(dinv, n, at.width, level.dinv[s] + own, level.dinv[1 - s] + own);
+    if (level.has_zero) {
+        for (int i = 0; i < n; ++i) dinv[i] = static_cast<float>(v.zero[i]);
+        split(dinv, n, at.width, level.packed_zero[s] + own, level.packed_zero[1 - s] + own);
+    }
     for (std::size_t k = 0; k < 2 * D; ++k) {
         float* to = level.weight[k] + own;
         if (s == 0)

@@ -38,6 +38,18 @@ struct WeightedProduct {
     }
 };
 
+/// The same with couplings to p = 0.
+template <int D>
+struct ZeroCoupledProduct {
+    WeightedProduct<D> faces;
+    const float* zero;
+    WEIR_INLINE d16 operator()(int m) const {
+        const d16 total = faces(m);
+        const f16 more = load16(zero + m) * load16(faces.own + m);
+        return {total.lo + low(more), total.hi + high(more)};
+    }
+};
+
 /// f(product) in the variant for the finest level. Entries outside fluid are meaningless: they must be multiplied by zero.
 template <int D, class F>
 WEIR_INLINE void with_product(const Level<D>& level, const Coloured<float>& v, int q, int j, int colour, F&& f) {
@@ -45,7 +57,9 @@ WEIR_INLINE void with_product(const Level<D>& level, const Coloured<float>& v, i
     const std::ptrdiff_t own = level.at.offset(level.at.row(q, j));
     const auto other = neighbours_of<D, const float>(level.at, q, j, colour, v[1 - c]);
     if (level.by_count) return f(CountedProduct<D>{level.count[c] + own, level.plain_weight[0], v[c] + own, other});
-    f(WeightedProduct<D>{v[c] + own, weights_of(level, q, j, colour), other});
+    const WeightedProduct<D> faces{v[c] + own, weights_of(level, q, j, colour), other};
+    if (level.has_zero) return f(ZeroCoupledProduct<D>{faces, level.packed_zero[c] + own});
+    f(faces);
 }
 
 }  // namespace weir::poisson

@@ -18,7 +18,7 @@ template <int D>
 void ListSolver<D>::setup(const Operator<D>& A) {
     const Stopwatch watch;
     extent_ = A.cells.extent();
-    system_.build(A);
+    system_.build(A, zero_);
     const auto n = static_cast<std::size_t>(system_.A.size());
     for (Vector* v : {&x_, &b_, &r_}) v->assign(n, 0);
     prepare();

@@ -2,6 +2,7 @@
 #pragma once
 #include "linear/stop_test.hpp"
 #include "poisson/matrix/system.hpp"
+#include "poisson/zero_coupling.hpp"
 
 #include <chrono>
 
@@ -27,13 +28,14 @@ void judge(const Options& options, Report& report);
 void check_extents(bool same, const char* what);
 
 template <int D>
-class ListSolver : public Solver<D> {
+class ListSolver : public Solver<D>, public ZeroCoupling<D> {
 public:
     explicit ListSolver(const Options& options) : options_(options) {}
     void setup(const Operator<D>& A) final;
     const Report& solve(Grid<real, D>& p, const Grid<real, D>& b) final { return continue_solve({}, p, b); }
     /// The same; iterations and history include those of another method's attempt.
     const Report& continue_solve(const Report& attempt, Grid<real, D>& p, const Grid<real, D>& b);
+    void couple_to_zero(const Grid<real, D>* z) final { zero_ = z; }
     void set_tolerance(real tolerance) final { options_.tolerance = tolerance; }
     std::size_t bytes() const final;
 
@@ -53,6 +55,7 @@ protected:
 private:
     real true_residual();
     Index<D> extent_{};
+    const Grid<real, D>* zero_ = nullptr;
     Report report_;
 };
 

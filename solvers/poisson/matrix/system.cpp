@@ -128,12 +128,12 @@ void insert_sorted(std::array<std::pair<int, real>, N>& entry, std::size_t count
 }
 
 /// Appends the row of cell I: weights to fluid neighbours by ascending number, and the diagonal with all open faces. The diagonal is the
-/// sum of the sorted weights, so it exceeds them exactly when a face leads to p = 0.
+/// sum of the sorted weights, so it exceeds them exactly when a face or `zero` leads to p = 0.
 template <int D>
-void append_row(Matrix& A, const Operator<D>& op, const std::vector<int>& number, const Index<D>& I) {
+void append_row(Matrix& A, const Operator<D>& op, const std::vector<int>& number, const Index<D>& I, real zero) {
     std::array<std::pair<int, real>, 2 * D> entry;
     std::size_t count = 0;
-    real to_zero = 0;
+    real to_zero = zero;
     for (int a = 0; a < D; ++a)
         for (int side = 0; side < 2; ++side) {
             const real w = face_weight(op, I, a, side);
@@ -157,7 +157,7 @@ void append_row(Matrix& A, const Operator<D>& op, const std::vector<int>& number
 }  // namespace
 
 template <int D>
-void System<D>::build(const Operator<D>& op) {
+void System<D>::build(const Operator<D>& op, const Grid<real, D>* zero) {
     const auto& extent = op.cells.extent();
     std::vector<int> number(op.cells.size(), -1);
     cell.clear();
@@ -174,7 +174,7 @@ void System<D>::build(const Operator<D>& op) {
     for_each_in_order<D>(extent, [&](const Index<D>& I, std::size_t at) {
         if (number[at] < 0) return;
         colour.push_back(colour_of(op, I));
-        append_row(A, op, number, I);
+        append_row(A, op, number, I, zero ? (*zero)[at] : 0);
     });
     ComponentFinder().find(A, components);
 }

@@ -79,7 +79,8 @@ struct System {
     std::vector<std::uint8_t> colour;  // neighbours have different colours: 0 and 1, more only across odd periodic axes
     Components components;
 
-    void build(const Operator<D>& op);
+    /// `zero`: further couplings to p = 0 (zero_coupling.hpp); nullptr: none.
+    void build(const Operator<D>& op, const Grid<real, D>* zero = nullptr);
     std::size_t bytes() const;
 };
 
