@@ -1,4 +1,4 @@
-// Enclosed air: pockets keep their volume or obey p V^γ = const, in vessels of any direction, through merging and splitting.
+// Enclosed air: pockets keep their volume or obey p V^γ = const, in vessels of any direction and under waves.
 #include "water/air_pockets.hpp"
 
 #include "support.hpp"
@@ -9,7 +9,6 @@ namespace air_pockets_tests {
 
 using namespace weir;
 using namespace weir::test;
-using poisson::Cell;
 
 namespace {
 
@@ -80,91 +79,7 @@ enclosed_gas = {{ pressure = {6} }}
                        list({"0.0", "-9.81", "0.0"}, D), gas_pressure);
 }
 
-/// A box of 8 by 12 (by 4) cells whose cells are air or liquid as drawn by a predicate, for the bookkeeping of pockets alone.
-template <int D>
-struct Drawn {
-    water::MacState<D> state;
-    water::Frame<D> frame;
-    water::LevelSet<D> surface;
-    Grid<std::uint8_t, D> closed;
-    Grid<real, D> part;
-    Drawn()
-        : state(water_scene(fmt::format("solver = \"mac_water\"\ndim = {}\ngrid = {{ cells = {}, size = {} }}\ntime.end = 1.0\n"
-                                        "fluid.density = 1000.0\nliquid = [ {{ shape = \"box\", min = {}, max = {} }} ]\n",
-                                        D, list({"8", "12", "4"}, D), list({"8.0", "12.0", "4.0"}, D), list({"0.0", "0.0", "0.0"}, D),
-                                        list({"1.0", "1.0", "1.0"}, D))),
-                FieldPlan{}),
-          frame(state.u, state.sides),
-          surface(frame, 1),
-          part(frame.cells) {}
-    template <class F>
-    void draw(F&& is_air) {
-        for_each_cell(frame.cells, [&](const Index<D>& I) {
-            const bool air = is_air(I);
-            state.cells(I) = air ? Cell::air : Cell::fluid;
-            part(I) = air ? 0 : 1;
-            surface.phi(I) = air ? 0.5 : -0.5;
-        });
-    }
-};
-
 }  // namespace
-
-// A pocket of two cells across has no law of its own: its pressure is that of the liquid before.
-TEST_IN_2D_AND_3D("a pocket that is not resolved has the pressure of the liquid") {
-    Drawn<D> box;
-    water::AirPockets<D> pockets(box.frame, water::GasLaw{100000, 1.4}, box.surface, box.closed, &box.part);
-    box.draw([](const Index<D>&) { return false; });
-    pockets.find(box.state);
-    box.state.p.fill(5000);
-    box.draw([](const Index<D>& I) { return (I[0] == 2 || I[0] == 3) && (I[1] == 2 || I[1] == 3) && I[D - 1] < 4; });
-    pockets.find(box.state);
-    ASSERT_EQ(pockets.pockets().size(), 1);
-    EXPECT_FALSE(pockets.pockets()[0].resolved);
-    EXPECT_NEAR(pockets.pockets()[0].pressure, 105000, 1e-8);
-}
-
-// p^(1/γ) V adds up: with V1 = V2 the merged pressure is ((p1^(1/γ) + p2^(1/γ)) / 2)^γ.
-TEST_IN_2D_AND_3D("pockets that merge add their content, and parts of a split one have its pressure") {
-    Drawn<D> box;
-    water::AirPockets<D> pockets(box.frame, water::GasLaw{100000, 1.4}, box.surface, box.closed, &box.part);
-    box.draw([](const Index<D>& I) { return I[0] != 3 && I[0] < 7; });
-    pockets.find(box.state);
-    ASSERT_EQ(pockets.pockets().size(), 2);
-    const real plane = D == 2 ? 12 : 48;
-    EXPECT_NEAR(pockets.pockets()[0].volume, 3 * plane, 1e-12 * plane);
-    EXPECT_NEAR(pockets.pockets()[0].pressure, 100000, 1e-8);
-    box.draw([](const Index<D>& I) { return I[0] != 3 && I[0] > 1 && I[0] < 7; });  // the first is squeezed to a third
-    pockets.find(box.state);
-    const real squeezed = 100000 * std::pow(3.0, 1.4);
-    ASSERT_EQ(pockets.pockets().size(), 2);
-    EXPECT_NEAR(pockets.pockets()[0].pressure, squeezed, 1e-8 * squeezed);
-    box.draw([](const Index<D>& I) { return I[0] > 1 && I[0] < 7; });  // 1 plane of the first, 3 of the second, 1 new: 5
-    pockets.find(box.state);
-    ASSERT_EQ(pockets.pockets().size(), 1);
-    const real merged = 100000 * std::pow(6.0 / 5, 1.4);
-    EXPECT_NEAR(pockets.pockets()[0].pressure, merged, 1e-8 * merged);
-    box.draw([](const Index<D>& I) { return I[0] > 1 && I[0] != 4 && I[0] < 7; });  // 2 of the 4 remaining planes each
-    pockets.find(box.state);
-    ASSERT_EQ(pockets.pockets().size(), 2);
-    const real parted = 100000 * std::pow(6.0 / 4, 1.4);
-    for (const auto& pocket : pockets.pockets()) EXPECT_NEAR(pocket.pressure, parted, 1e-8 * parted);
-}
-
-TEST_IN_2D_AND_3D("air that reaches an open side is open, and is enclosed at its pressure") {
-    Drawn<D> box;
-    box.state.sides.side(0, 1).kind = geometry::SideKind::outflow;
-    water::AirPockets<D> pockets(box.frame, water::GasLaw{90000, 1.4}, box.surface, box.closed, &box.part);
-    box.draw([](const Index<D>& I) { return I[0] > 1; });
-    pockets.find(box.state);
-    EXPECT_EQ(pockets.pockets().size(), 0);
-    EXPECT_TRUE(pockets.has_open_air());
-    box.draw([](const Index<D>& I) { return I[0] > 1 && I[0] < 6; });
-    pockets.find(box.state);
-    ASSERT_EQ(pockets.pockets().size(), 1);
-    EXPECT_NEAR(pockets.pockets()[0].pressure, 90000, 1e-8);
-    EXPECT_FALSE(pockets.has_open_air());
-}
 
 // 1%: the volume that the steps lose is given back at a quarter per step; in every direction and at every shift of the grid.
 TEST("a cup upside down under water keeps incompressible air") {
@@ -177,6 +92,32 @@ TEST("a cup upside down under water keeps incompressible air") {
             EXPECT_EQ(integral(water, "air_pockets"), 1) << turns << " " << shift;
             EXPECT_NEAR(integral(water, "largest_pocket_volume"), volume, 0.01 * volume) << turns << " " << shift;
         }
+}
+
+// A column falls beside a chamber that is open below its water only. 1e-4: the correction gives back what the steps lose, 4e-6 here.
+TEST("waves that run into a chamber leave its air its volume, on either side") {
+    for (const bool mirrored : {false, true}) {
+        const auto box = [&](real x0, real y0, real x1, real y1) {
+            return fmt::format("{{ shape = \"box\", min = [{}, {}], max = [{}, {}] }}", mirrored ? 2 - x1 : x0, y0, mirrored ? 2 - x0 : x1,
+                               y1);
+        };
+        water::Water<2> water(
+            water_scene(fmt::format(R"(solver = "mac_water"
+dim = 2
+grid = {{ cells = [64, 32], size = [2.0, 1.0] }}
+time = {{ end = 2.0 }}
+fluid = {{ density = 1000.0 }}
+sides = {{ y_max = {{ kind = "outflow" }} }}
+liquid = [ {}, {} ]
+solids = [ {}, {} ]
+effects = {{ gravity = {{ g = [0.0, -9.81] }} }}
+air = "enclosed"
+)",
+                                    box(-1, -1, 3, 0.35), box(-1, -1, 0.5, 0.75), box(1.2, 0.25, 1.3, 2), box(1.25, 0.7, 3, 0.85))));
+        const real volume = integral(water, "largest_pocket_volume");
+        run(water, 0.8);
+        EXPECT_NEAR(integral(water, "largest_pocket_volume"), volume, 1e-4 * volume) << mirrored;
+    }
 }
 
 // Without the model the cup fills: the control of the test above.
