@@ -104,14 +104,17 @@ template <int D>
 struct Dust {
     const Padded<D>& before;
     const Around<D>& around;
+    const Grid<poisson::Cell, D>& cells;
     const std::vector<Index<D>>& offsets;
 
+    /// K becomes its index within the domain. False: it lies beyond a side, or in a solid.
+    bool takes_part(Index<D>& K) const { return around.wrap(K) && cells(K) != poisson::Cell::solid; }
     /// The neighbour of I, within the domain, that is closest to one half; the first of several. False: none takes dust.
     bool receiver(const Index<D>& I, Index<D>& J) const {
         real closest = takes_below;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!around.wrap(K)) continue;
+            if (!takes_part(K)) continue;
             const real distance = std::abs(before(K) - 0.5);
             if (distance < closest) closest = distance, J = K;
         }
@@ -126,7 +129,7 @@ struct Dust {
         real sum = 0;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!around.wrap(K)) continue;
+            if (!takes_part(K)) continue;
             const real given = dust_of(before(K));
             if (given != 0 && receiver(K, J) && J == I) sum += given;
         }
@@ -137,10 +140,12 @@ struct Dust {
 }  // namespace
 
 template <int D>
-void hand_on_dust(const Padded<D>& before, const Around<D>& around, Grid<real, D>& f) {
+void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f) {
     static const std::vector<Index<D>> offsets = neighbours<D>();
-    const Dust<D> all{before, around, offsets};
-    for_each_cell(f.extent(), [&](const Index<D>& I) { f(I) += all.change(I); });
+    const Dust<D> all{before, around, cells, offsets};
+    for_each_cell(f.extent(), [&](const Index<D>& I) {
+        if (cells(I) != poisson::Cell::solid) f(I) += all.change(I);
+    });
 }
 
 namespace {
@@ -190,11 +195,11 @@ void start_fractions(const geometry::Shape<D>& liquid, const MacVelocity<D>& gri
     });
 }
 
-#define WEIR_INSTANTIATE(D)                                                         \
-    template class FractionGhosts<D>;                                               \
-    template class Around<D>;                                                       \
-    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);       \
-    template void hand_on_dust(const Padded<D>&, const Around<D>&, Grid<real, D>&); \
+#define WEIR_INSTANTIATE(D)                                                                                        \
+    template class FractionGhosts<D>;                                                                              \
+    template class Around<D>;                                                                                      \
+    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);                                      \
+    template void hand_on_dust(const Padded<D>&, const Around<D>&, const Grid<poisson::Cell, D>&, Grid<real, D>&); \
     template void start_fractions(const geometry::Shape<D>&, const MacVelocity<D>&, Grid<real, D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

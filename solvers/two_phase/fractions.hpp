@@ -65,9 +65,10 @@ void find_face_fractions(const Padded<D>& cells, int axis, Grid<real, D>& faces)
 /// Fractions within this distance of 0 or 1 are handed to the neighbour that is closest to one half, so that columns of cells end.
 inline constexpr real dust = 1e-9;
 /// Moves dust; the sum is unchanged. Each cell gathers what its neighbours give, in the order of their indices. `f`: the fractions before,
-/// in the grid and with two layers of ghosts.
+/// in the grid and with two layers of ghosts. Solid
+/// cells give and take nothing.
 template <int D>
-void hand_on_dust(const Padded<D>& before, const Around<D>& around, Grid<real, D>& f);
+void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f);
 
 /// The fraction of every cell inside a shape: in cells near its surface by sub-cells, each cut by a plane at the shape's distance.
 template <int D>

@@ -77,10 +77,11 @@ scene::SolverKind kind() {
                    scheme_key({PoissonChoice::key()}),
                    start_keys()};
     schema.effects = effect_schemas();
-    schema.without = {"solids",       "emitters", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "initial.temperature",
-                      "initial.smoke"};
+    schema.without = {"solids.motion",       "emitters",     "sides.*.temperature", "sides.*.smoke", "sides.*.profile",
+                      "initial.temperature", "initial.smoke"};
     schema.why_without =
-        "this solver has walls, p = 0 on open sides and periodic axes only; \"mac_water\" has solids, bodies, emitters and heat";
+        "this solver has walls, solids at rest, p = 0 on open sides and periodic axes; \"mac_water\" has moving solids, bodies, emitters "
+        "and heat";
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},

@@ -45,6 +45,7 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
     : options_(scene),
       experiment_(experiment),
       state_(scene, two_phase::fields()),
+      solids_(geometry::Solids<D>(scene), state_),
       ghosts_of_fraction_(state_.sides, -1),
       around_(state_.sides, state_.u.cells),
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
@@ -54,6 +55,7 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
       fraction_ghosts_(state_.extent()),
       projection_(options_.poisson, state_) {
     refuse_sides(scene);
+    place_solids(scene);
     free_surface::refuse_flat_cells(scene, free_surface::Frame<D>(state_.u, state_.sides));
     options_.gravity = norm(gravity_);
     state_.rho = options_.rho.lightest();
@@ -69,7 +71,8 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
         effects_.declare({.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = curvature_.bytes()});
     }
     if (scene.effect("viscosity")) {
-        viscosity_ = std::make_unique<Viscosity<D>>(state_, options_.rho.liquid * options_.nu_liquid, options_.rho.gas * options_.nu_gas);
+        viscosity_ =
+            std::make_unique<Viscosity<D>>(state_, solids_, options_.rho.liquid * options_.nu_liquid, options_.rho.gas * options_.nu_gas);
         effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes() + sizeof(*viscosity_)});
     }
     start_liquid(scene);
@@ -89,12 +92,23 @@ void TwoPhase<D>::refuse_sides(const scene::Scene& scene) const {
 }
 
 template <int D>
+void TwoPhase<D>::place_solids(const scene::Scene& scene) {
+    if (!solids_.any()) return;
+    if (scene.effect("surface_tension"))
+        scene.refuse("effects.surface_tension",
+                     "solver \"two_phase\" has no contact angle at solids, so it does not support surface tension together with them",
+                     "without solids, or without surface tension");
+    open_flow_ = PaddedVelocity<D>(state_.u);
+    continued_ = ContinuedFractions<D>(state_, around_);
+}
+
+template <int D>
 void TwoPhase<D>::start_liquid(const scene::Scene& scene) {
     const auto shapes = geometry::make_shapes<D>(scene.root().tables("liquid"));
     if (shapes.empty()) scene.refuse("liquid", "a scene of liquid and gas needs liquid: at least one shape");
     const auto liquid = geometry::unite<D>(shapes);
     start_fractions<D>(*liquid, state_.u, state_.fields[0].values);
-    if (sum_over(state_.extent(), [&](const Index<D>& I) { return fraction()(I); }) == 0)
+    if (sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? fraction()(I) : 0; }) == 0)
         scene.refuse("liquid", "there is no liquid in the domain");
     find_face_densities();
 }
@@ -121,6 +135,8 @@ template TwoPhase<2>::TwoPhase(const scene::Scene&, const Partition&, const Expe
 template TwoPhase<3>::TwoPhase(const scene::Scene&, const Partition&, const Experiment&);
 template void TwoPhase<2>::refuse_sides(const scene::Scene&) const;
 template void TwoPhase<3>::refuse_sides(const scene::Scene&) const;
+template void TwoPhase<2>::place_solids(const scene::Scene&);
+template void TwoPhase<3>::place_solids(const scene::Scene&);
 template void TwoPhase<2>::start_liquid(const scene::Scene&);
 template void TwoPhase<3>::start_liquid(const scene::Scene&);
 template void TwoPhase<2>::start_velocity(const scene::Scene&);

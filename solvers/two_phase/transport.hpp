@@ -26,9 +26,10 @@ std::array<int, D> sweep_order(std::int64_t step);
 /// Motion during a step.
 template <int D>
 struct Motion {
-    const PaddedVelocity<D>& u;  // at the start of the step, mirrored at walls [m/s]
-    real dt;                     // [s]
-    std::array<int, D> order;    // of the sweeps
+    const PaddedVelocity<D>& u;     // at the start of the step, mirrored at walls [m/s]
+    const PaddedVelocity<D>& flow;  // through the open part of faces: A u; without solids u itself [m/s]
+    real dt;                        // [s]
+    std::array<int, D> order;       // of the sweeps
 };
 
 template <int D>
@@ -55,7 +56,7 @@ private:
         Densities rho;
         /// C of the lower face along axis d: the mean over the two cells of a face's volume.
         real courant(int d, const Index<D>& I) const {
-            const Padded<D>& u = motion.u[d];
+            const Padded<D>& u = motion.flow[d];
             return per_cell[d] * (component < 0 ? u(I) : 0.5 * (u(I - e<D>(component)) + u(I)));
         }
         real dilation(int d, const Index<D>& I) const { return courant(d, I + e<D>(d)) - courant(d, I); }

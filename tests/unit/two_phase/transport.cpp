@@ -50,8 +50,8 @@ TEST("a component that is uniform stays uniform in a flow that varies across it"
     for (int a = 0; a < 3; ++a) fill(u[a], state.u[a], state.boundary[static_cast<std::size_t>(a)]);
     two_phase::Transport<3> transport(state);
     for (int step = 0; step < 6; ++step)
-        transport.advect_momentum(2, {u, 0.02, two_phase::sweep_order<3>(step)}, solver.face_fractions()[2], state.boundary[2], {1000, 1},
-                                  state.u[2]);
+        transport.advect_momentum(2, {u, u, 0.02, two_phase::sweep_order<3>(step)}, solver.face_fractions()[2], state.boundary[2],
+                                  {1000, 1}, state.u[2]);
     EXPECT_LT(mac::max_magnitude(state.u[2], 1), 1e-12);
     EXPECT_GT(mac::max_magnitude(state.u[0]), 0.3) << "the flow varies";
 }
@@ -66,7 +66,7 @@ TEST("dust goes to the neighbour that is closest to one half, and the sum stays"
     f({{10, 10}}) = 1e-10;  // without such a neighbour: it stays
     mac::Padded<2> padded(state.extent());
     two_phase::FractionGhosts<2>(state.sides, -1).fill_all(padded, f);
-    two_phase::hand_on_dust(padded, two_phase::Around<2>(state.sides, state.u.cells), f);
+    two_phase::hand_on_dust(padded, two_phase::Around<2>(state.sides, state.u.cells), state.cells, f);
     EXPECT_EQ(f({{4, 5}}), 0);
     EXPECT_EQ(f({{5, 4}}), 1);
     EXPECT_EQ(f({{0, 0}}), 0) << "through the periodic corner";
