@@ -8,7 +8,8 @@ namespace weir::two_phase {
 using Kind = EndRule::Kind;
 
 template <int D>
-FractionGhosts<D>::FractionGhosts(const geometry::Sides<D>& sides, int component) {
+FractionGhosts<D>::FractionGhosts(const geometry::Sides<D>& sides, int component, const EnteringFractions<D>& entering)
+    : entering_(entering) {
     boundary_.node_axis = component;
     for (int axis = 0; axis < D; ++axis)
         for (auto& rule : boundary_.end[static_cast<std::size_t>(axis)]) rule.kind = sides.periodic(axis) ? Kind::periodic : Kind::neumann;
@@ -19,12 +20,27 @@ template <int D>
 void FractionGhosts<D>::fill_all(Padded<D>& to, const Grid<real, D>& from) const {
     fill(to, from, boundary_);
     mirror_about_sides(to);
+    set_entering(to);
 }
 
 template <int D>
 void FractionGhosts<D>::fill_outer(Padded<D>& q) const {
     fill_ghosts(q, boundary_);
     mirror_about_sides(q);
+    set_entering(q);
+}
+
+template <int D>
+void FractionGhosts<D>::set_entering(Padded<D>& q) const {
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1}) {
+            const auto& given = entering_[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)];
+            if (!given) continue;
+            Index<D> lo = Index<D>::constant(-ghost_layers);
+            Extent<D> hi(q.extent() + Index<D>::constant(ghost_layers));
+            (end == 0 ? hi[a] : lo[a]) = end == 0 ? 0 : q.extent()[a];
+            for_each_in(lo, hi, [&](const Index<D>& I) { q(I) = *given; });
+        }
 }
 
 /// q(−k) = q(k), q(n + k) = q(n − k) for nodes 0 and n on the sides.

@@ -73,6 +73,7 @@ void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
     const Vec<D> of_liquid = moment_of_liquid(), of_gas = moment_of_space() - of_liquid;
     list.push_back({"volume", unit, liquid});
     list.push_back({"gas_volume", unit, gas});
+    if (has_open_sides()) list.push_back({"poured_volume", unit, poured_});
     list.push_back({"potential_energy", D == 2 ? "J/m" : "J", -dot(gravity_, options_.rho.liquid * of_liquid + options_.rho.gas * of_gas)});
     for (int d = 0; d < D; ++d) {
         const std::string axis(1, "xyz"[d]);
@@ -127,6 +128,7 @@ void TwoPhase<D>::save(Checkpoint& to) const {
     state_.save(to);
     to.put_value("two_phase.steps", steps_);
     to.put_value("two_phase.ruled", ruled_);
+    if (has_open_sides()) to.put_value("two_phase.poured", poured_);
 }
 
 template <int D>
@@ -134,6 +136,7 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
     state_.restore(from);
     steps_ = from.get_value<std::int64_t>("two_phase.steps");
     ruled_ = from.get_value<std::array<std::int64_t, bounds>>("two_phase.ruled");
+    if (has_open_sides()) poured_ = from.get_value<real>("two_phase.poured");
     Checkpoint::require_within("two_phase.steps", steps_, 0, std::numeric_limits<std::int64_t>::max());
     find_face_densities();
     find_rate();

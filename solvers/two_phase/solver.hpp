@@ -77,6 +77,7 @@ public:
 private:
     // Start (start.cpp)
     void refuse_sides(const scene::Scene& scene) const;
+    bool has_open_sides() const;
     void place_solids(const scene::Scene& scene);
     void start_liquid(const scene::Scene& scene);
     void start_velocity(const scene::Scene& scene);
@@ -104,6 +105,7 @@ private:
     Experiment experiment_;
     MacState<D> state_;  // its density is that of the lighter phase, its mobility that over the density of the face
     SolidPlacement<D> solids_;
+    EnteringFractions<D> entering_;
     std::array<Boundary<D>, D> mirrored_;  // conditions of the advecting velocity: no flow through walls
     FractionGhosts<D> ghosts_of_fraction_;
     Around<D> around_;
@@ -122,6 +124,7 @@ private:
     mutable bool distance_is_stale_ = true;
     std::int64_t steps_ = 0;
     std::array<std::int64_t, bounds> ruled_{};  // steps that each bound ruled
+    real poured_ = 0;                           // liquid that came in through sides since the start, less what left [m³; m²]
     real rate_ = 0;                             // max Σ|u|/h over cells [1/s]
     Passes passes_;
 };

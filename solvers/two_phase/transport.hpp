@@ -35,9 +35,9 @@ struct Motion {
 template <int D>
 class Transport {
 public:
-    explicit Transport(const MacState<D>& state);
-    /// Advects the fractions of cells.
-    void advect_fraction(const Motion<D>& motion, Grid<real, D>& f);
+    Transport(const MacState<D>& state, const EnteringFractions<D>& entering);
+    /// Advects the fractions of cells. Returns the liquid that came in through open sides and inflows, less what left [cells].
+    real advect_fraction(const Motion<D>& motion, Grid<real, D>& f);
     /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start;
     /// `carried`: the conditions of the component at the sides; `to`: the new component.
     void advect_momentum(int a, const Motion<D>& motion, const Grid<real, D>& fractions, const Boundary<D>& carried, const Densities& rho,
@@ -61,13 +61,16 @@ private:
         }
         real dilation(int d, const Index<D>& I) const { return courant(d, I + e<D>(d)) - courant(d, I); }
     };
-    void run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
+    /// Returns the liquid that crossed open sides and inflows.
+    real run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
+    real inflow(int d) const;
     void find_fluxes(const Volumes& v, int d);
     void add_fluxes(const Volumes& v, int number);
 
     Vec<D> per_cell(real dt) const;
 
     Vec<D> spacing_{};  // [m]
+    geometry::Sides<D> sides_;
     FractionGhosts<D> cell_ghosts_;
     std::array<FractionGhosts<D>, D> face_ghosts_;
     Padded<D> cell_fraction_;
