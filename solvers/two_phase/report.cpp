@@ -95,7 +95,7 @@ real TwoPhase<D>::furthest(int axis) const {
     return max_over(state_.extent(), [&](const Index<D>& I) {
         const real here = f(I), x = state_.u.cell_centre(I)[axis];
         if (here < 0.5 || !is_open(state_, I)) return -infinity;
-        if (I[axis] + 1 == n) return std::min(end, x + h * (here - 0.5));
+        if (I[axis] + 1 == n || !is_open(state_, I + e<D>(axis))) return std::min(end, x + h * (here - 0.5));
         const real there = f(I + e<D>(axis));
         return there >= 0.5 ? -infinity : x + h * (here - 0.5) / (here - there);
     });
