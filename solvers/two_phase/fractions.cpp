@@ -8,7 +8,8 @@ namespace weir::two_phase {
 using Kind = EndRule::Kind;
 
 template <int D>
-FractionGhosts<D>::FractionGhosts(const geometry::Sides<D>& sides, int component) {
+FractionGhosts<D>::FractionGhosts(const geometry::Sides<D>& sides, int component, const EnteringFractions<D>& entering)
+    : entering_(entering) {
     boundary_.node_axis = component;
     for (int axis = 0; axis < D; ++axis)
         for (auto& rule : boundary_.end[static_cast<std::size_t>(axis)]) rule.kind = sides.periodic(axis) ? Kind::periodic : Kind::neumann;
@@ -19,12 +20,27 @@ template <int D>
 void FractionGhosts<D>::fill_all(Padded<D>& to, const Grid<real, D>& from) const {
     fill(to, from, boundary_);
     mirror_about_sides(to);
+    set_entering(to);
 }
 
 template <int D>
 void FractionGhosts<D>::fill_outer(Padded<D>& q) const {
     fill_ghosts(q, boundary_);
     mirror_about_sides(q);
+    set_entering(q);
+}
+
+template <int D>
+void FractionGhosts<D>::set_entering(Padded<D>& q) const {
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1}) {
+            const auto& given = entering_[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)];
+            if (!given) continue;
+            Index<D> lo = Index<D>::constant(-ghost_layers);
+            Extent<D> hi(q.extent() + Index<D>::constant(ghost_layers));
+            (end == 0 ? hi[a] : lo[a]) = end == 0 ? 0 : q.extent()[a];
+            for_each_in(lo, hi, [&](const Index<D>& I) { q(I) = *given; });
+        }
 }
 
 /// q(−k) = q(k), q(n + k) = q(n − k) for nodes 0 and n on the sides.
@@ -104,14 +120,17 @@ template <int D>
 struct Dust {
     const Padded<D>& before;
     const Around<D>& around;
+    const Grid<poisson::Cell, D>& cells;
     const std::vector<Index<D>>& offsets;
 
+    /// K becomes its index within the domain. False: it lies beyond a side, or in a solid.
+    bool takes_part(Index<D>& K) const { return around.wrap(K) && cells(K) != poisson::Cell::solid; }
     /// The neighbour of I, within the domain, that is closest to one half; the first of several. False: none takes dust.
     bool receiver(const Index<D>& I, Index<D>& J) const {
         real closest = takes_below;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!around.wrap(K)) continue;
+            if (!takes_part(K)) continue;
             const real distance = std::abs(before(K) - 0.5);
             if (distance < closest) closest = distance, J = K;
         }
@@ -126,7 +145,7 @@ struct Dust {
         real sum = 0;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!around.wrap(K)) continue;
+            if (!takes_part(K)) continue;
             const real given = dust_of(before(K));
             if (given != 0 && receiver(K, J) && J == I) sum += given;
         }
@@ -137,10 +156,12 @@ struct Dust {
 }  // namespace
 
 template <int D>
-void hand_on_dust(const Padded<D>& before, const Around<D>& around, Grid<real, D>& f) {
+void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f) {
     static const std::vector<Index<D>> offsets = neighbours<D>();
-    const Dust<D> all{before, around, offsets};
-    for_each_cell(f.extent(), [&](const Index<D>& I) { f(I) += all.change(I); });
+    const Dust<D> all{before, around, cells, offsets};
+    for_each_cell(f.extent(), [&](const Index<D>& I) {
+        if (cells(I) != poisson::Cell::solid) f(I) += all.change(I);
+    });
 }
 
 namespace {
@@ -190,11 +211,11 @@ void start_fractions(const geometry::Shape<D>& liquid, const MacVelocity<D>& gri
     });
 }
 
-#define WEIR_INSTANTIATE(D)                                                         \
-    template class FractionGhosts<D>;                                               \
-    template class Around<D>;                                                       \
-    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);       \
-    template void hand_on_dust(const Padded<D>&, const Around<D>&, Grid<real, D>&); \
+#define WEIR_INSTANTIATE(D)                                                                                        \
+    template class FractionGhosts<D>;                                                                              \
+    template class Around<D>;                                                                                      \
+    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);                                      \
+    template void hand_on_dust(const Padded<D>&, const Around<D>&, const Grid<poisson::Cell, D>&, Grid<real, D>&); \
     template void start_fractions(const geometry::Shape<D>&, const MacVelocity<D>&, Grid<real, D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -7,6 +7,7 @@
 #include "two_phase/planes.hpp"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace weir::two_phase {
@@ -24,21 +25,27 @@ Strides<D> strides_of(const Padded<D>& q) {
     return stride;
 }
 
-/// Fractions beyond the sides: periodic, otherwise mirrored (a contact angle of 90 degrees).
+/// The fraction of the fluid that enters at each end of each axis; no value: nothing enters there by itself.
+template <int D>
+using EnteringFractions = std::array<std::array<std::optional<real>, 2>, D>;
+
+/// Fractions beyond the sides: periodic; that of the fluid that enters at an inflow; otherwise mirrored (a contact angle of 90 degrees).
 template <int D>
 class FractionGhosts {
 public:
     FractionGhosts() = default;
     /// `component`: the axis of the faces, of which the first and last lie on sides; −1: cells.
-    FractionGhosts(const geometry::Sides<D>& sides, int component);
+    FractionGhosts(const geometry::Sides<D>& sides, int component, const EnteringFractions<D>& entering);
     void fill_all(Padded<D>& to, const Grid<real, D>& from) const;
     /// From the values of the inner box.
     void fill_outer(Padded<D>& q) const;
 
 private:
     void mirror_about_sides(Padded<D>& q) const;
+    void set_entering(Padded<D>& q) const;
     Boundary<D> boundary_;
     int mirrored_axis_ = -1;  // whose outermost nodes lie on sides
+    EnteringFractions<D> entering_{};
 };
 
 /// The cell's index within the domain: periodic images and mirror images of cells beyond the sides.
@@ -65,9 +72,10 @@ void find_face_fractions(const Padded<D>& cells, int axis, Grid<real, D>& faces)
 /// Fractions within this distance of 0 or 1 are handed to the neighbour that is closest to one half, so that columns of cells end.
 inline constexpr real dust = 1e-9;
 /// Moves dust; the sum is unchanged. Each cell gathers what its neighbours give, in the order of their indices. `f`: the fractions before,
-/// in the grid and with two layers of ghosts.
+/// in the grid and with two layers of ghosts. Solid
+/// cells give and take nothing.
 template <int D>
-void hand_on_dust(const Padded<D>& before, const Around<D>& around, Grid<real, D>& f);
+void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f);
 
 /// The fraction of every cell inside a shape: in cells near its surface by sub-cells, each cut by a plane at the shape's distance.
 template <int D>

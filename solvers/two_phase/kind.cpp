@@ -60,6 +60,24 @@ Key start_keys() {
     return initial;
 }
 
+/// What enters through each side of kind "inflow".
+Key side_keys() {
+    Key sides{.name = "sides", .type = Type::table};
+    for (const std::string axis : {"x", "y", "z"})
+        for (const std::string end : {"_min", "_max"})
+            sides.keys.push_back({.name = axis + end,
+                                  .type = Type::table,
+                                  .selector = "kind",
+                                  .variants = {{"inflow",
+                                                "",
+                                                {{.name = "fluid",
+                                                  .type = Type::choice,
+                                                  .doc = "What enters.",
+                                                  .fallback = std::string("liquid"),
+                                                  .choices = {"liquid", "gas"}}}}}});
+    return sides;
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -74,13 +92,16 @@ scene::SolverKind kind() {
                               .fallback = 0.5,
                               .max = 0.5}}},
                    gas_key(),
+                   side_keys(),
                    scheme_key({PoissonChoice::key()}),
                    start_keys()};
     schema.effects = effect_schemas();
-    schema.without = {"solids",       "emitters", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "initial.temperature",
-                      "initial.smoke"};
+    schema.without = {"solids.motion",       "emitters",     "sides.*.temperature", "sides.*.smoke", "sides.*.profile",
+                      "initial.temperature", "initial.smoke"};
     schema.why_without =
-        "this solver has walls, p = 0 on open sides and periodic axes only; \"mac_water\" has solids, bodies, emitters and heat";
+        "this solver has walls, inflows, p = 0 on open sides, periodic axes and solids at rest; \"mac_water\" has moving solids, bodies, "
+        "emitters "
+        "and heat";
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},

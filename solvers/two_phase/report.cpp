@@ -26,7 +26,8 @@ real TwoPhase<D>::sum_of_faces(int a, real (*power)(real)) const {
     return state_.u.cell_volume() * sum_over(state_.u[a].extent(), [&](const Index<D>& I) {
                const bool inside = I[a] > 0 && I[a] < n;
                const real share = inside ? 1 : state_.sides.periodic(a) ? (I[a] == 0 ? 1 : 0) : 0.5;
-               return share * options_.rho.of(fractions(I)) * power(state_.u[a](I));
+               const real open = solids_.any() ? state_.solid.open[static_cast<std::size_t>(a)](I) : 1;
+               return share * open * options_.rho.of(fractions(I)) * power(state_.u[a](I));
            });
 }
 
@@ -37,6 +38,7 @@ Vec<D> TwoPhase<D>::moment_of_liquid() const {
     Vec<D> moment;
     for (int d = 0; d < D; ++d)
         moment[d] = state_.u.cell_volume() * sum_over(state_.extent(), [&](const Index<D>& I) {
+                        if (!is_open(state_, I)) return 0.0;
                         const real f = fraction()(I), sum = f * (state_.u.cell_centre(I)[d] - state_.u.origin[d]);
                         if (!is_mixed(f)) return sum;
                         const Plane<D> plane = plane_at<D>(fraction_ghosts_.at(I), stride);
@@ -47,23 +49,36 @@ Vec<D> TwoPhase<D>::moment_of_liquid() const {
     return moment;
 }
 
+/// ∫ (x − origin) dV over the cells that hold fluid.
+template <int D>
+Vec<D> TwoPhase<D>::moment_of_space() const {
+    const real cell = state_.u.cell_volume(), box = cell * static_cast<real>(product(state_.u.cells));
+    Vec<D> moment;
+    for (int d = 0; d < D; ++d) {
+        const real h = state_.u.h[d];
+        moment[d] = 0.5 * box * h * state_.u.cells[d];
+        if (solids_.any())
+            moment[d] = cell * h * sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? I[d] + 0.5 : 0.0; });
+    }
+    return moment;
+}
+
 /// Volumes, centres of volume, and potential energy: −g·∫ρ (x − origin) dV.
 template <int D>
 void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
     const std::string unit = D == 2 ? "m^2" : "m^3";
-    const real cell = state_.u.cell_volume(), box = cell * static_cast<real>(product(state_.u.cells));
-    const real liquid = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return fraction()(I); });
-    const real gas = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return 1 - fraction()(I); });
-    const Vec<D> of_liquid = moment_of_liquid();
-    Vec<D> of_gas;
-    for (int d = 0; d < D; ++d) of_gas[d] = 0.5 * box * state_.u.h[d] * state_.u.cells[d] - of_liquid[d];
+    const real cell = state_.u.cell_volume();
+    const real liquid = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? fraction()(I) : 0; });
+    const real gas = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? 1 - fraction()(I) : 0; });
+    const Vec<D> of_liquid = moment_of_liquid(), of_gas = moment_of_space() - of_liquid;
     list.push_back({"volume", unit, liquid});
     list.push_back({"gas_volume", unit, gas});
+    if (has_open_sides()) list.push_back({"poured_volume", unit, poured_});
     list.push_back({"potential_energy", D == 2 ? "J/m" : "J", -dot(gravity_, options_.rho.liquid * of_liquid + options_.rho.gas * of_gas)});
     for (int d = 0; d < D; ++d) {
         const std::string axis(1, "xyz"[d]);
         const real speed = cell * sum_over(state_.extent(), [&](const Index<D>& I) {
-                               return (1 - fraction()(I)) * 0.5 * (state_.u[d](I) + state_.u[d](I + e<D>(d)));
+                               return is_open(state_, I) ? (1 - fraction()(I)) * 0.5 * (state_.u[d](I) + state_.u[d](I + e<D>(d))) : 0;
                            });
         list.push_back({"centre_" + axis, "m", liquid > 0 ? state_.u.origin[d] + of_liquid[d] / liquid : not_applicable});
         list.push_back({"gas_centre_" + axis, "m", gas > 0 ? state_.u.origin[d] + of_gas[d] / gas : not_applicable});
@@ -79,8 +94,8 @@ real TwoPhase<D>::furthest(int axis) const {
     const real h = state_.u.h[axis], end = state_.u.origin[axis] + h * n;
     return max_over(state_.extent(), [&](const Index<D>& I) {
         const real here = f(I), x = state_.u.cell_centre(I)[axis];
-        if (here < 0.5) return -infinity;
-        if (I[axis] + 1 == n) return std::min(end, x + h * (here - 0.5));
+        if (here < 0.5 || !is_open(state_, I)) return -infinity;
+        if (I[axis] + 1 == n || !is_open(state_, I + e<D>(axis))) return std::min(end, x + h * (here - 0.5));
         const real there = f(I + e<D>(axis));
         return there >= 0.5 ? -infinity : x + h * (here - 0.5) / (here - there);
     });
@@ -113,6 +128,7 @@ void TwoPhase<D>::save(Checkpoint& to) const {
     state_.save(to);
     to.put_value("two_phase.steps", steps_);
     to.put_value("two_phase.ruled", ruled_);
+    if (has_open_sides()) to.put_value("two_phase.poured", poured_);
 }
 
 template <int D>
@@ -120,6 +136,7 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
     state_.restore(from);
     steps_ = from.get_value<std::int64_t>("two_phase.steps");
     ruled_ = from.get_value<std::array<std::int64_t, bounds>>("two_phase.ruled");
+    if (has_open_sides()) poured_ = from.get_value<real>("two_phase.poured");
     Checkpoint::require_within("two_phase.steps", steps_, 0, std::numeric_limits<std::int64_t>::max());
     find_face_densities();
     find_rate();
@@ -129,8 +146,10 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t TwoPhase<D>::bytes() const {
     std::size_t total = state_.bytes() + transport_.bytes() + fraction_ghosts_.bytes() + curvature_.bytes() + projection_.bytes() +
-                        effects_.bytes() + distance_.bytes() + (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0);
+                        effects_.bytes() + distance_.bytes() + solids_.bytes() + continued_.bytes() +
+                        (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0);
     for (const auto& fractions : faces_) total += fractions.bytes();
+    for (const auto& component : open_flow_.face) total += component.bytes();
     return total;
 }
 
@@ -138,6 +157,7 @@ std::size_t TwoPhase<D>::bytes() const {
     template FieldSet TwoPhase<D>::fields() const;                        \
     template real TwoPhase<D>::sum_of_faces(int, real (*)(real)) const;   \
     template Vec<D> TwoPhase<D>::moment_of_liquid() const;                \
+    template Vec<D> TwoPhase<D>::moment_of_space() const;                 \
     template void TwoPhase<D>::add_volumes(std::vector<Integral>&) const; \
     template real TwoPhase<D>::furthest(int) const;                       \
     template std::vector<Integral> TwoPhase<D>::integrals() const;        \

@@ -35,9 +35,16 @@ StepReport TwoPhase<D>::step(real dt) {
 }
 
 template <int D>
-void TwoPhase<D>::transport(real dt) {
+Motion<D> TwoPhase<D>::motion(real dt) {
     for (int a = 0; a < D; ++a) fill(state_.before[a], state_.u[a], mirrored_[static_cast<std::size_t>(a)]);
-    const Motion<D> motion{state_.before, dt, sweep_order<D>(steps_ + experiment_.first_order_of_sweeps)};
+    if (solids_.any()) find_open_flow<D>(state_, solids_, mirrored_, open_flow_);
+    const PaddedVelocity<D>& flow = solids_.any() ? open_flow_ : state_.before;
+    return {state_.before, flow, dt, sweep_order<D>(steps_ + experiment_.first_order_of_sweeps)};
+}
+
+template <int D>
+void TwoPhase<D>::transport(real dt) {
+    const Motion<D> motion = this->motion(dt);
     const Densities rho = experiment_.velocity_form ? Densities{} : options_.rho;
     {
         const auto timed = passes_.time("transport momentum");
@@ -46,13 +53,18 @@ void TwoPhase<D>::transport(real dt) {
             transport_.advect_momentum(a, motion, faces_[at], state_.boundary[at], rho, state_.u[a]);
         }
         set_side_faces(state_.u, state_.sides, state_.nu);
+        solids_.set_faces(state_);
         sync_periodic(state_.u, state_.sides);
     }
     const auto timed = passes_.time("transport liquid");
     Grid<real, D>& f = state_.fields[0].values;
-    transport_.advect_fraction(motion, f);
+    poured_ += state_.u.cell_volume() * transport_.advect_fraction(motion, f);
     ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
-    hand_on_dust(fraction_ghosts_, around_, f);
+    hand_on_dust(fraction_ghosts_, around_, state_.cells, f);
+    if (solids_.any()) {
+        ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
+        continued_.extend(ghosts_of_fraction_, fraction_ghosts_, f);
+    }
     distance_is_stale_ = true;
 }
 
@@ -96,6 +108,7 @@ void TwoPhase<D>::apply_tension(real dt) {
 template <int D>
 const poisson::Report& TwoPhase<D>::project(real dt) {
     const auto timed = passes_.time("project");
+    solids_.set_faces(state_);
     sync_periodic(state_.u, state_.sides);
     projection_.set_matrix(state_, &fraction());
     return projection_.project(state_, dt);
@@ -104,9 +117,12 @@ const poisson::Report& TwoPhase<D>::project(real dt) {
 /// Weymouth & Yue's measure of a step: the cells that leave a cell along all axes together.
 template <int D>
 void TwoPhase<D>::find_rate() {
+    const auto leaving = [&](int a, const Index<D>& I) {
+        return std::abs(solids_.any() ? state_.solid.open[static_cast<std::size_t>(a)](I) * state_.u[a](I) : state_.u[a](I));
+    };
     rate_ = max_over(state_.extent(), [&](const Index<D>& I) {
         real sum = 0;
-        for (int a = 0; a < D; ++a) sum += larger_or_nan(std::abs(state_.u[a](I)), std::abs(state_.u[a](I + e<D>(a)))) / state_.u.h[a];
+        for (int a = 0; a < D; ++a) sum += larger_or_nan(leaving(a, I), leaving(a, I + e<D>(a))) / state_.u.h[a];
         return sum;
     });
 }

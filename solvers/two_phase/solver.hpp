@@ -11,6 +11,7 @@
 #include "mac/grid/state.hpp"
 #include "scene/solver_kind.hpp"
 #include "two_phase/curvature.hpp"
+#include "two_phase/solids.hpp"
 #include "two_phase/transport.hpp"
 #include "two_phase/viscosity.hpp"
 
@@ -76,10 +77,13 @@ public:
 private:
     // Start (start.cpp)
     void refuse_sides(const scene::Scene& scene) const;
+    bool has_open_sides() const;
+    void place_solids(const scene::Scene& scene);
     void start_liquid(const scene::Scene& scene);
     void start_velocity(const scene::Scene& scene);
 
     // The passes of a step, in order
+    Motion<D> motion(real dt);
     void transport(real dt);
     void find_face_densities();
     void apply_viscosity(real dt);
@@ -93,12 +97,15 @@ private:
     Bound ruling_bound() const;
     real sum_of_faces(int a, real (*power)(real)) const;
     Vec<D> moment_of_liquid() const;
+    Vec<D> moment_of_space() const;
     void add_volumes(std::vector<Integral>& list) const;
     real furthest(int axis) const;
 
     Options options_;
     Experiment experiment_;
-    MacState<D> state_;                    // its density is that of the lighter phase, its mobility that over the density of the face
+    MacState<D> state_;  // its density is that of the lighter phase, its mobility that over the density of the face
+    SolidPlacement<D> solids_;
+    EnteringFractions<D> entering_;
     std::array<Boundary<D>, D> mirrored_;  // conditions of the advecting velocity: no flow through walls
     FractionGhosts<D> ghosts_of_fraction_;
     Around<D> around_;
@@ -106,6 +113,8 @@ private:
     Vec<D> gravity_{};
     int up_ = 1;
     Transport<D> transport_;
+    PaddedVelocity<D> open_flow_;      // empty without solids
+    ContinuedFractions<D> continued_;  // likewise
     Padded<D> fraction_ghosts_;
     FaceFractions<D> faces_;
     Curvature<D> curvature_;                   // empty without tension
@@ -115,6 +124,7 @@ private:
     mutable bool distance_is_stale_ = true;
     std::int64_t steps_ = 0;
     std::array<std::int64_t, bounds> ruled_{};  // steps that each bound ruled
+    real poured_ = 0;                           // liquid that came in through sides since the start, less what left [m³; m²]
     real rate_ = 0;                             // max Σ|u|/h over cells [1/s]
     Passes passes_;
 };

@@ -8,6 +8,8 @@
 #include "two_phase/effects.hpp"
 #include "two_phase/solver.hpp"
 
+#include <algorithm>
+
 namespace weir::two_phase {
 
 Options::Options(const scene::Scene& scene) : poisson(scene.root().table("scheme").table("poisson")) {
@@ -38,6 +40,19 @@ geometry::Sides<D> frictionless(geometry::Sides<D> sides) {
     return sides;
 }
 
+std::string side_name(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
+
+template <int D>
+EnteringFractions<D> entering_fractions(const scene::Scene& scene, const geometry::Sides<D>& sides) {
+    EnteringFractions<D> entering;
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1})
+            if (sides.side(a, end).kind == geometry::SideKind::inflow)
+                entering[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)] =
+                    scene.root().table(side_name(a, end)).text("fluid") == "liquid" ? 1 : 0;
+    return entering;
+}
+
 }  // namespace
 
 template <int D>
@@ -45,15 +60,18 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
     : options_(scene),
       experiment_(experiment),
       state_(scene, two_phase::fields()),
-      ghosts_of_fraction_(state_.sides, -1),
+      solids_(geometry::Solids<D>(scene), state_),
+      entering_(entering_fractions<D>(scene, state_.sides)),
+      ghosts_of_fraction_(state_.sides, -1, entering_),
       around_(state_.sides, state_.u.cells),
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
       gravity_(free_surface::gravity_of<D>(scene)),
       up_(free_surface::up_axis<D>(gravity_)),
-      transport_(state_),
+      transport_(state_, entering_),
       fraction_ghosts_(state_.extent()),
       projection_(options_.poisson, state_) {
     refuse_sides(scene);
+    place_solids(scene);
     free_surface::refuse_flat_cells(scene, free_surface::Frame<D>(state_.u, state_.sides));
     options_.gravity = norm(gravity_);
     state_.rho = options_.rho.lightest();
@@ -69,7 +87,8 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
         effects_.declare({.name = "surface_tension", .pass = effect_pass("surface_tension"), .bytes = curvature_.bytes()});
     }
     if (scene.effect("viscosity")) {
-        viscosity_ = std::make_unique<Viscosity<D>>(state_, options_.rho.liquid * options_.nu_liquid, options_.rho.gas * options_.nu_gas);
+        viscosity_ =
+            std::make_unique<Viscosity<D>>(state_, solids_, options_.rho.liquid * options_.nu_liquid, options_.rho.gas * options_.nu_gas);
         effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes() + sizeof(*viscosity_)});
     }
     start_liquid(scene);
@@ -78,14 +97,32 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
 }
 
 template <int D>
+bool TwoPhase<D>::has_open_sides() const {
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1})
+            if (state_.sides.open(a, end)) return true;
+    return false;
+}
+
+template <int D>
 void TwoPhase<D>::refuse_sides(const scene::Scene& scene) const {
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1})
-            if (state_.sides.side(a, end).kind == geometry::SideKind::inflow)
-                scene.refuse(
-                    std::string("sides.") + "xyz"[a] + (end == 0 ? "_min" : "_max") + ".kind",
-                    "solver \"two_phase\" does not support sides of kind \"inflow\": the fraction of the fluid that enters is not known",
-                    "wall, moving_wall, outflow (p = 0) or periodic");
+            if (state_.sides.side(a, end).kind == geometry::SideKind::inflow && !has_open_sides())
+                scene.refuse(side_name(a, end),
+                             "the inflow needs an open side: both fluids are incompressible, and what enters cannot leave",
+                             "add a side of kind \"outflow\" (p = 0)");
+}
+
+template <int D>
+void TwoPhase<D>::place_solids(const scene::Scene& scene) {
+    if (!solids_.any()) return;
+    if (scene.effect("surface_tension"))
+        scene.refuse("effects.surface_tension",
+                     "solver \"two_phase\" has no contact angle at solids, so it does not support surface tension together with them",
+                     "without solids, or without surface tension");
+    open_flow_ = PaddedVelocity<D>(state_.u);
+    continued_ = ContinuedFractions<D>(state_, around_);
 }
 
 template <int D>
@@ -94,7 +131,7 @@ void TwoPhase<D>::start_liquid(const scene::Scene& scene) {
     if (shapes.empty()) scene.refuse("liquid", "a scene of liquid and gas needs liquid: at least one shape");
     const auto liquid = geometry::unite<D>(shapes);
     start_fractions<D>(*liquid, state_.u, state_.fields[0].values);
-    if (sum_over(state_.extent(), [&](const Index<D>& I) { return fraction()(I); }) == 0)
+    if (sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? fraction()(I) : 0; }) == 0)
         scene.refuse("liquid", "there is no liquid in the domain");
     find_face_densities();
 }
@@ -112,15 +149,20 @@ void TwoPhase<D>::start_velocity(const scene::Scene& scene) {
             });
         sync_periodic(state_.u, state_.sides);
     }
-    if (!liquid_moves && scene.root().text_or("initial.velocity.name", "rest") == "rest") return;
+    const bool enters = std::any_of(entering_.begin(), entering_.end(), [](const auto& ends) { return ends[0] || ends[1]; });
+    if (!liquid_moves && !enters && scene.root().text_or("initial.velocity.name", "rest") == "rest") return;
     project(1);
     state_.p.fill(0);
 }
 
 template TwoPhase<2>::TwoPhase(const scene::Scene&, const Partition&, const Experiment&);
 template TwoPhase<3>::TwoPhase(const scene::Scene&, const Partition&, const Experiment&);
+template bool TwoPhase<2>::has_open_sides() const;
+template bool TwoPhase<3>::has_open_sides() const;
 template void TwoPhase<2>::refuse_sides(const scene::Scene&) const;
 template void TwoPhase<3>::refuse_sides(const scene::Scene&) const;
+template void TwoPhase<2>::place_solids(const scene::Scene&);
+template void TwoPhase<3>::place_solids(const scene::Scene&);
 template void TwoPhase<2>::start_liquid(const scene::Scene&);
 template void TwoPhase<3>::start_liquid(const scene::Scene&);
 template void TwoPhase<2>::start_velocity(const scene::Scene&);

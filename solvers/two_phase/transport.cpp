@@ -14,15 +14,16 @@ std::array<int, D> sweep_order(std::int64_t step) {
 }
 
 template <int D>
-Transport<D>::Transport(const MacState<D>& state)
+Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& entering)
     : spacing_(state.u.h),
-      cell_ghosts_(state.sides, -1),
+      sides_(state.sides),
+      cell_ghosts_(state.sides, -1, entering),
       cell_fraction_(state.extent()),
       velocity_(state.u),
       liquid_flux_(Extent<D>(state.u.cells + Index<D>::constant(2))),
       momentum_flux_(liquid_flux_.extent()) {
     for (int a = 0; a < D; ++a) {
-        face_ghosts_[static_cast<std::size_t>(a)] = FractionGhosts<D>(state.sides, a);
+        face_ghosts_[static_cast<std::size_t>(a)] = FractionGhosts<D>(state.sides, a, entering);
         face_fraction_[static_cast<std::size_t>(a)] = Padded<D>(state.u[a].extent());
     }
 }
@@ -57,10 +58,11 @@ Vec<D> Transport<D>::per_cell(real dt) const {
 }
 
 template <int D>
-void Transport<D>::advect_fraction(const Motion<D>& motion, Grid<real, D>& f) {
+real Transport<D>::advect_fraction(const Motion<D>& motion, Grid<real, D>& f) {
     cell_ghosts_.fill_all(cell_fraction_, f);
-    run_sweeps({-1, motion, per_cell(motion.dt), f, cell_fraction_, nullptr, {}}, cell_ghosts_, nullptr);
+    const real entered = run_sweeps({-1, motion, per_cell(motion.dt), f, cell_fraction_, nullptr, {}}, cell_ghosts_, nullptr);
     copy(cell_fraction_, f);
+    return entered;
 }
 
 template <int D>
@@ -74,15 +76,38 @@ void Transport<D>::advect_momentum(int a, const Motion<D>& motion, const Grid<re
 }
 
 template <int D>
-void Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity) {
+real Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity) {
+    real entered = 0;
     for (int number = 0; number < D; ++number) {
         if (number > 0) {
             of_fraction.fill_outer(v.f);
             if (v.q) fill_ghosts(*v.q, *of_velocity);
         }
-        find_fluxes(v, v.motion.order[static_cast<std::size_t>(number)]);
+        const int d = v.motion.order[static_cast<std::size_t>(number)];
+        find_fluxes(v, d);
+        if (v.component < 0) entered += inflow(d);
         add_fluxes(v, number);
     }
+    return entered;
+}
+
+/// Of the fluxes of a sweep over cells, through the two sides of its axis.
+template <int D>
+real Transport<D>::inflow(int d) const {
+    real sum = 0;
+    for (const int end : {0, 1}) {
+        const auto kind = sides_.side(d, end).kind;
+        if (kind != geometry::SideKind::outflow && kind != geometry::SideKind::inflow) continue;
+        Extent<D> plane(cell_fraction_.extent());
+        plane[d] = 1;
+        const int at = end == 0 ? 0 : cell_fraction_.extent()[d];
+        const real through = sum_over(plane, [&](Index<D> I) {
+            I[d] = at;
+            return liquid_flux_(I);
+        });
+        sum += end == 0 ? through : -through;
+    }
+    return sum;
 }
 
 /// Through the lower face of every volume along axis d: F, and the momentum that the mass ρ_l F + ρ_g (C − F) carries.

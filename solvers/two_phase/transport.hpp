@@ -26,17 +26,18 @@ std::array<int, D> sweep_order(std::int64_t step);
 /// Motion during a step.
 template <int D>
 struct Motion {
-    const PaddedVelocity<D>& u;  // at the start of the step, mirrored at walls [m/s]
-    real dt;                     // [s]
-    std::array<int, D> order;    // of the sweeps
+    const PaddedVelocity<D>& u;     // at the start of the step, mirrored at walls [m/s]
+    const PaddedVelocity<D>& flow;  // through the open part of faces: A u; without solids u itself [m/s]
+    real dt;                        // [s]
+    std::array<int, D> order;       // of the sweeps
 };
 
 template <int D>
 class Transport {
 public:
-    explicit Transport(const MacState<D>& state);
-    /// Advects the fractions of cells.
-    void advect_fraction(const Motion<D>& motion, Grid<real, D>& f);
+    Transport(const MacState<D>& state, const EnteringFractions<D>& entering);
+    /// Advects the fractions of cells. Returns the liquid that came in through open sides and inflows, less what left [cells].
+    real advect_fraction(const Motion<D>& motion, Grid<real, D>& f);
     /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start;
     /// `carried`: the conditions of the component at the sides; `to`: the new component.
     void advect_momentum(int a, const Motion<D>& motion, const Grid<real, D>& fractions, const Boundary<D>& carried, const Densities& rho,
@@ -55,18 +56,21 @@ private:
         Densities rho;
         /// C of the lower face along axis d: the mean over the two cells of a face's volume.
         real courant(int d, const Index<D>& I) const {
-            const Padded<D>& u = motion.u[d];
+            const Padded<D>& u = motion.flow[d];
             return per_cell[d] * (component < 0 ? u(I) : 0.5 * (u(I - e<D>(component)) + u(I)));
         }
         real dilation(int d, const Index<D>& I) const { return courant(d, I + e<D>(d)) - courant(d, I); }
     };
-    void run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
+    /// Returns the liquid that crossed open sides and inflows.
+    real run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
+    real inflow(int d) const;
     void find_fluxes(const Volumes& v, int d);
     void add_fluxes(const Volumes& v, int number);
 
     Vec<D> per_cell(real dt) const;
 
     Vec<D> spacing_{};  // [m]
+    geometry::Sides<D> sides_;
     FractionGhosts<D> cell_ghosts_;
     std::array<FractionGhosts<D>, D> face_ghosts_;
     Padded<D> cell_fraction_;

@@ -11,7 +11,7 @@ constexpr int most_iterations = 2000;
 }  // namespace
 
 template <int D>
-Viscosity<D>::Viscosity(const MacState<D>& state, real mu_liquid, real mu_gas)
+Viscosity<D>::Viscosity(const MacState<D>& state, const SolidPlacement<D>& solids, real mu_liquid, real mu_gas)
     : mu_liquid_(mu_liquid),
       mu_gas_(mu_gas),
       cell_mu_(state.extent()),
@@ -23,7 +23,27 @@ Viscosity<D>::Viscosity(const MacState<D>& state, real mu_liquid, real mu_gas)
       inverse_(residual_) {
     for (int a = 0; a < D; ++a) homogeneous_[static_cast<std::size_t>(a)] = boundary_[static_cast<std::size_t>(a)].homogeneous();
     for (int b = 1; b < D; ++b)
-        for (int a = 0; a < b; ++a) edge(a, b) = Grid<real, D>(Extent<D>(state.u.cells + e<D>(a) + e<D>(b)));
+        for (int a = 0; a < b; ++a) {
+            edge(a, b) = Grid<real, D>(Extent<D>(state.u.cells + e<D>(a) + e<D>(b)));
+            if (solids.any()) find_solid_edges(state, solids, a, b);
+        }
+}
+
+template <int D>
+void Viscosity<D>::find_solid_edges(const MacState<D>& state, const SolidPlacement<D>& solids, int a, int b) {
+    const auto is_closed = [&](int axis, const Index<D>& F) {
+        const auto& open = state.solid.open[static_cast<std::size_t>(axis)];
+        return open.contains(F) && open(F) == 0;
+    };
+    const Grid<real, D>& edges = edge(a, b);
+    for (std::size_t at = 0; at < edges.size(); ++at) {
+        const Index<D> I = index_of<D>(edges.extent(), at);
+        if (!is_closed(a, I) && !is_closed(a, I - e<D>(b)) && !is_closed(b, I) && !is_closed(b, I - e<D>(a))) continue;
+        Vec<D> x = state.u.face_centre(a, I);
+        x[b] = state.u.origin[b] + state.u.h[b] * I[b];
+        const auto& all = solids.solids();
+        solid_edges_[edge_number(a, b)].push_back({at, all[all.nearest(x)].no_slip ? 2.0 : 0.0});
+    }
 }
 
 /// f(a, first, count) on the rows of unknowns of every component.
@@ -70,24 +90,30 @@ void Viscosity<D>::find_viscosities(const Padded<D>& f) {
     const Index<D> one = Index<D>::constant(1);
     for_each_cell(Extent<D>(cell_mu_.extent() + one + one), [&](const Index<D>& I) { cell_mu_(I - one) = mu(I - one); });
     for (int b = 1; b < D; ++b)
-        for (int a = 0; a < b; ++a)
+        for (int a = 0; a < b; ++a) {
             for_each_cell(edge(a, b).extent(), [&](const Index<D>& I) {
                 const Index<D> J = I - e<D>(a), K = I - e<D>(b);
                 edge(a, b)(I) = bears_shear(a, b, I) ? 0.25 * ((mu(I) + mu(J - e<D>(b))) + (mu(J) + mu(K))) : 0;
             });
+            for (const SolidEdge& beside : solid_edges_[edge_number(a, b)]) edge(a, b)[beside.edge] *= beside.factor;
+        }
 }
 
-/// The diagonal of the matrix. Beside sides it is that of the interior: close enough to precondition.
+/// The diagonal of the matrix. Beside sides it is that of the interior: close enough to precondition. Its inverse is 0 on closed faces,
+/// which keep their velocity.
 template <int D>
 void Viscosity<D>::find_coefficients() {
     const Vec<D>& h = residual_.h;
+    const auto is_closed = [&](int a, const Index<D>& I) {
+        return state_->solid.any() && state_->solid.open[static_cast<std::size_t>(a)](I) == 0;
+    };
     for_each_row([&](int a, const Index<D>& first, int count) {
         Index<D> I = first;
         for (int i = 0; i < count; ++i, ++I[0]) {
             real sum = 2 * (cell_mu_(I) + cell_mu_(I - e<D>(a))) / (h[a] * h[a]);
             for (int b = 0; b < D; ++b)
                 if (b != a) sum += (edge(a, b)(I) + edge(a, b)(I + e<D>(b))) / (h[b] * h[b]);
-            inverse_[a](I) = 1 / (mass_[a](I) + dt_ * sum);
+            inverse_[a](I) = is_closed(a, I) ? 0 : 1 / (mass_[a](I) + dt_ * sum);
         }
     });
 }

@@ -1,8 +1,9 @@
 // Viscosity with a jump: (ρ_a − dt ∇·2μD) u = ρ_a u*, implicit, all components at once, by conjugate gradients with the diagonal. ρ_a is
 // that of the faces' volumes; μ = f μ_l + (1 − f) μ_g in cells, and the mean of four cells at edges. Edges on sides that are not no-slip
-// walls bear no shear.
+// walls bear no shear. The surface of a solid is that of its closed faces.
 #pragma once
 #include "linear/conjugate_gradients.hpp"
+#include "mac/bodies/solid_faces.hpp"
 #include "two_phase/transport.hpp"
 
 namespace weir::two_phase {
@@ -11,7 +12,7 @@ template <int D>
 class Viscosity {
 public:
     /// mu_liquid, mu_gas: dynamic viscosities [Pa s].
-    Viscosity(const MacState<D>& state, real mu_liquid, real mu_gas);
+    Viscosity(const MacState<D>& state, const SolidPlacement<D>& solids, real mu_liquid, real mu_gas);
     /// u* → u over dt. `f`: fractions of cells with a layer of ghosts; `faces`: of the faces' volumes.
     void apply(MacState<D>& state, const Padded<D>& f, const FaceFractions<D>& faces, const Densities& rho, real dt);
     int iterations() const { return iterations_; }
@@ -27,12 +28,14 @@ public:
 private:
     void find_viscosities(const Padded<D>& f);
     void find_coefficients();
+    void find_solid_edges(const MacState<D>& state, const SolidPlacement<D>& solids, int a, int b);
     bool bears_shear(int a, int b, const Index<D>& I) const;
     void multiply_row(int a, const Index<D>& first, int count, real* result) const;
     real start();
     void clear_walls();
-    Grid<real, D>& edge(int a, int b) { return edge_mu_[static_cast<std::size_t>(D == 2 ? 0 : 3 - a - b)]; }
-    const Grid<real, D>& edge(int a, int b) const { return edge_mu_[static_cast<std::size_t>(D == 2 ? 0 : 3 - a - b)]; }
+    static std::size_t edge_number(int a, int b) { return static_cast<std::size_t>(D == 2 ? 0 : 3 - a - b); }
+    Grid<real, D>& edge(int a, int b) { return edge_mu_[edge_number(a, b)]; }
+    const Grid<real, D>& edge(int a, int b) const { return edge_mu_[edge_number(a, b)]; }
     template <class F>
     void for_each_row(F&& f) const;
     template <class F>
@@ -41,6 +44,13 @@ private:
     real mu_liquid_, mu_gas_;
     Padded<D> cell_mu_;                                  // [Pa s]
     std::array<Grid<real, D>, D == 2 ? 1 : 3> edge_mu_;  // of the edges along axis k; in 2D the nodes
+    /// An edge beside a closed face, and the factor of its viscosity: 0 at free-slip solids; 2 at no-slip ones, whose surface is half a
+    /// cell away.
+    struct SolidEdge {
+        std::size_t edge;
+        real factor;
+    };
+    std::array<std::vector<SolidEdge>, D == 2 ? 1 : 3> solid_edges_;
     std::array<Boundary<D>, D> boundary_, homogeneous_;
     PaddedVelocity<D> direction_;                         // p; at the start u*
     MacVelocity<D> residual_, product_, mass_, inverse_;  // mass: ρ_a; inverse: of the diagonal

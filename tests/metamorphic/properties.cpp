@@ -168,8 +168,9 @@ constexpr int gained = 3;  // cells
 /// Walls of the domain become solids: it is larger by some cells beyond each wall, and a box of the same slip fills what it gained.
 Outcome with_solid_walls(const Base& base) {
     const std::string& solver = base.scene.solver();
-    if (solver != "mac" && solver != "mac_water" && solver != "tallcell" && !has_particles(base.scene))
+    if (solver != "mac" && solver != "mac_water" && solver != "two_phase" && solver != "tallcell" && !has_particles(base.scene))
         throw Untransformable("walls of " + solver + " are its sides");
+    if (solver == "two_phase" && base.scene.effect("surface_tension")) throw Untransformable("two_phase has no tension beside solids");
     if (base.scene.has("substance")) throw Untransformable("heat passes solids");
     Table root = base.read.root();
     Table& grid = *root.find_table("grid");

@@ -28,6 +28,7 @@ std::vector<Metric> surface_metrics();
 std::vector<Metric> vessel_metrics();
 std::vector<Metric> boiling_metrics();
 std::vector<Metric> capillary_metrics();
+std::vector<Metric> bubble_metrics();
 std::vector<Metric> flow_past_metrics();
 std::vector<Metric> everyday_metrics();
 std::vector<Metric> air_metrics();

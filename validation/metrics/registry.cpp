@@ -12,7 +12,7 @@ const std::vector<Metric>& metrics() {
               lattice_metrics(),     height_field_metrics(), procedural_metrics(), pond_metrics(),      body_metrics(),
               body_budget_metrics(), ice_metrics(),          substance_metrics(),  melting_metrics(),   melting_convection_metrics(),
               surface_metrics(),     vessel_metrics(),       boiling_metrics(),    capillary_metrics(), flow_past_metrics(),
-              everyday_metrics(),    error_bars_metrics(),   air_metrics()})
+              everyday_metrics(),    bubble_metrics(),       error_bars_metrics(), air_metrics()})
             list.insert(list.end(), part.begin(), part.end());
         return list;
     }();

@@ -93,6 +93,26 @@ REFERENCE(swinging_drop) {
     return ref;
 }
 
+// A short capsule of one fluid in the middle of the other, let go at rest: its second mode, of the circle or sphere of its volume.
+REFERENCE(swinging_capsule) {
+    const scene::Table& outer = disk(scene);
+    const bool is_bubble = outer.text("shape") == "difference";
+    const scene::Table& capsule = is_bubble ? outer.tables("minus").at(0) : outer;
+    const int dim = scene.dim();
+    const real length =
+        dim == 2 ? norm(capsule.vec<2>("to") - capsule.vec<2>("from")) : norm(capsule.vec<3>("to") - capsule.vec<3>("from"));
+    const real r = capsule.number("radius"), liquid = scene.number("fluid.density"), gas = scene.number("gas.density");
+    const real inside = is_bubble ? gas : liquid, outside = is_bubble ? liquid : gas;
+    const real R = dim == 2 ? std::sqrt(r * r + 2 * r * length / pi) : std::cbrt(r * r * r + 0.75 * r * r * length);
+    const real mass = dim == 2 ? (inside + outside) / 6 : (3 * inside + 2 * outside) / 24;
+    Reference ref{.source =
+                      "Lamb 1932, Hydrodynamics, art. 273 and 275: omega^2 = n (n^2 - 1) sigma/((rho_i + rho_e) R^3) for cylinders, "
+                      "(n - 1) n (n + 1) (n + 2) sigma/(((n + 1) rho_i + n rho_e) R^3) for spheres, n = 2"};
+    const real sigma = needed_effect(scene, "surface_tension").number("sigma");
+    ref.numbers = {{"frequency", std::sqrt(sigma / (mass * R * R * R))}, {"radius", R}};
+    return ref;
+}
+
 // The liquid is a box in the corner of a wall and a floor that it sticks to, and spreads on that floor.
 REFERENCE(viscous_current) {
     const scene::Table& box = disk(scene);

@@ -22,7 +22,7 @@ Errors<D> errors(int n, F&& kappa) {
     TwoPhase<D> solver(two_phase_scene(drop<D>(n), {{"liquid[0].centre", list({"0.507", "0.493", "0.511"}, D)}}));
     const auto& state = solver.state();
     Padded<D> padded(state.extent());
-    FractionGhosts<D>(state.sides, -1).fill_all(padded, solver.fraction());
+    FractionGhosts<D>(state.sides, -1, {}).fill_all(padded, solver.fraction());
     const Around<D> around(state.sides, state.u.cells);
     const Interface<D> interface { solver.fraction(), padded, around, state.u.h };
     const real exact = (D - 1) / 0.2;

@@ -48,10 +48,10 @@ TEST("a component that is uniform stays uniform in a flow that varies across it"
     state.u[2].fill(1);
     mac::PaddedVelocity<3> u(state.u);
     for (int a = 0; a < 3; ++a) fill(u[a], state.u[a], state.boundary[static_cast<std::size_t>(a)]);
-    two_phase::Transport<3> transport(state);
+    two_phase::Transport<3> transport(state, {});
     for (int step = 0; step < 6; ++step)
-        transport.advect_momentum(2, {u, 0.02, two_phase::sweep_order<3>(step)}, solver.face_fractions()[2], state.boundary[2], {1000, 1},
-                                  state.u[2]);
+        transport.advect_momentum(2, {u, u, 0.02, two_phase::sweep_order<3>(step)}, solver.face_fractions()[2], state.boundary[2],
+                                  {1000, 1}, state.u[2]);
     EXPECT_LT(mac::max_magnitude(state.u[2], 1), 1e-12);
     EXPECT_GT(mac::max_magnitude(state.u[0]), 0.3) << "the flow varies";
 }
@@ -65,8 +65,8 @@ TEST("dust goes to the neighbour that is closest to one half, and the sum stays"
     f({{5, 5}}) = 0.4, f({{6, 5}}) = 0.9, f({{4, 5}}) = 1e-10, f({{5, 4}}) = 1 - 2e-10, f({{0, 0}}) = 3e-10, f({{15, 15}}) = 0.5;
     f({{10, 10}}) = 1e-10;  // without such a neighbour: it stays
     mac::Padded<2> padded(state.extent());
-    two_phase::FractionGhosts<2>(state.sides, -1).fill_all(padded, f);
-    two_phase::hand_on_dust(padded, two_phase::Around<2>(state.sides, state.u.cells), f);
+    two_phase::FractionGhosts<2>(state.sides, -1, {}).fill_all(padded, f);
+    two_phase::hand_on_dust(padded, two_phase::Around<2>(state.sides, state.u.cells), state.cells, f);
     EXPECT_EQ(f({{4, 5}}), 0);
     EXPECT_EQ(f({{5, 4}}), 1);
     EXPECT_EQ(f({{0, 0}}), 0) << "through the periodic corner";

@@ -67,9 +67,9 @@ TEST("a rotating block with a jump of viscosity feels no stress inside") {
             state.u[a](I) = a == 0 ? -(x[1] - 0.5) : x[0] - 0.5;
         });
     mac::Padded<2> f(state.extent());
-    two_phase::FractionGhosts<2>(state.sides, -1).fill_all(f, base.fraction());
+    two_phase::FractionGhosts<2>(state.sides, -1, {}).fill_all(f, base.fraction());
     const mac::MacVelocity<2> before = state.u;
-    two_phase::Viscosity<2>(state, 100, 10).apply(state, f, base.face_fractions(), {1000, 1}, 1e-6);
+    two_phase::Viscosity<2>(state, {{}, state}, 100, 10).apply(state, f, base.face_fractions(), {1000, 1}, 1e-6);
     // A stress of mu / 1 s on one side of a face would change it by dt (100 - 10) Pa / (h rho) = 3e-6 m/s. Walls, which do not rotate, are
     // four cells away, over each of which their effect falls by nu dt/h^2 = 2.6e-3.
     for (int a = 0; a < 2; ++a)
