@@ -16,7 +16,7 @@ struct Problem {
 /// box, wavy, box_weights, wavy_weights (cut by round solids); rooms, slits, blocks, fractions (uniform in [1e-4, 1]), magnitudes
 /// (log-uniform there), bands (contrast 50); the shapes of phase_shapes.hpp, with this ratio of densities. n cells along each axis.
 template <int D>
-Problem<D> make(const std::string& name, int n, real ratio);
+Problem<D> make(const std::string& name, int n, real ratio = 1000);
 
 /// ‖b − A p‖₂ / ‖b‖₂ in double precision, from the definition.
 template <int D>
