@@ -6,6 +6,7 @@
 #include "sim/make_solver.hpp"
 #include "sim/registry.hpp"
 #include "sim/requested_times.hpp"
+#include "sim/scene_files.hpp"
 #include "sim/shares.hpp"
 #include "sim/simulation.hpp"
 #include "sim/steadiness.hpp"
@@ -49,7 +50,7 @@ void require_same_domain(const scene::Scene& scene, const Checkpoint& from) {
 /// Checkpoint block with the files of the scene (scene_files.hpp); absent where it names none.
 constexpr const char* files_block = "sim.files";
 
-void require_same_files(const scene::Scene& scene, const std::vector<sim::SceneFile>& files, const std::string& there) {
+void require_same_files(const scene::Scene& scene, const std::string& files, const std::string& there) {
     if (const std::string changed = sim::changed_file(files, there); !changed.empty())
         throw BadInput(
             fmt::format("{}: the file {} has changed since the checkpoint: a run continues with the files it began with; name a "
@@ -121,7 +122,7 @@ void Simulation::save(Checkpoint& to) const {
     for (const auto& o : scene_.overrides()) overrides += o.key + '=' + o.value + '\0';
     put_text(to, "sim.overrides", overrides);
     to.put(domain_block, domain_of(scene_));
-    if (!files_.empty()) put_text(to, files_block, sim::lines_of(files_));
+    if (!files_.empty()) put_text(to, files_block, files_);
     to.put_value("sim.steps", steps_);
     to.put_value("sim.frame", frame_);
     to.put_value("sim.at_frame", at_frame_);

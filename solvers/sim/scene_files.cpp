@@ -4,7 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <sstream>
 #include <variant>
 
 namespace weir::sim {
@@ -21,8 +22,6 @@ void collect(const scene::Table& table, std::vector<SceneFile>& to) {
             to.push_back({*name, digest(bytes_of(table.file(key)))});
     }
 }
-
-std::string line_of(const SceneFile& file) { return fmt::format("{:016x} {}\n", file.contents, file.name); }
 
 }  // namespace
 
@@ -41,14 +40,16 @@ std::vector<SceneFile> scene_files(const scene::Scene& scene) {
 
 std::string lines_of(const std::vector<SceneFile>& files) {
     std::string lines;
-    for (const SceneFile& file : files) lines += line_of(file);
+    for (const SceneFile& file : files) lines += fmt::format("{:016x} {}\n", file.contents, file.name);
     return lines;
 }
 
-std::string changed_file(const std::vector<SceneFile>& here, std::string_view lines) {
-    for (const SceneFile& file : here)
-        if (lines.find(" " + file.name + "\n") != std::string_view::npos && lines.find(line_of(file)) == std::string_view::npos)
-            return file.name;
+std::string changed_file(const std::string& here, const std::string& there) {
+    std::istringstream lines(here);
+    for (std::string line; std::getline(lines, line);) {
+        const std::string name = line.substr(std::min(line.size(), line.find(' ') + 1));
+        if (there.find(" " + name + "\n") != std::string::npos && there.find(line + "\n") == std::string::npos) return name;
+    }
     return "";
 }
 

@@ -15,6 +15,7 @@
 #include "sim/registry.hpp"
 #include "sim/requested_times.hpp"
 #include "sim/room.hpp"
+#include "sim/scene_files.hpp"
 #include "sim/shares.hpp"
 #include "sim/steadiness.hpp"
 
@@ -79,7 +80,7 @@ Simulation::Simulation(scene::Scene scene, const std::vector<scene::SolverKind>&
       meets_frames_(scene_.text("output.at") == "exact"),
       steady_rate_(scene_.root().number_or("time.stop_when_steady", 0)),
       changes_(changes_in(scene_)),
-      files_(sim::scene_files(scene_)),
+      files_(sim::lines_of(sim::scene_files(scene_))),
       threads_(sim::threads_for(scene_)) {
     read_times();
     if (scene_.has("output.fields")) {
@@ -118,7 +119,7 @@ void Simulation::steer(const scene::Override& change) {
     solver->restore(state);
     replace(std::move(solver));
     scene_ = std::move(changed);
-    files_ = sim::scene_files(scene_);
+    files_ = sim::lines_of(sim::scene_files(scene_));
     read_times();
 }
 

@@ -9,7 +9,6 @@
 #include "scene/scene.hpp"
 #include "scene/solver_kind.hpp"
 #include "sim/probes.hpp"
-#include "sim/scene_files.hpp"
 #include "sim/thread_choice.hpp"
 
 #include <algorithm>
@@ -187,7 +186,7 @@ private:
     bool split_ = false;                            // whether a step was split
     std::vector<std::string> warnings_, concerns_;  // concerns_: the kinds already reported
     std::vector<Change> changes_;
-    std::vector<sim::SceneFile> files_;
+    std::string files_;         // of the scene, with their contents (sim/scene_files.hpp)
     std::int64_t changed_ = 0;  // number of changes applied
     std::string edited_;        // the field that edit() is writing
     struct Watch {

@@ -74,13 +74,25 @@ Line straightened(const Line& line) {
     return kept;
 }
 
+/// Tenths of a pixel, as short as SVG reads them: 12 is 1.2, 10 is 1, −5 is −.5.
+std::string tenths(long value) {
+    const long whole = std::abs(value) / 10, digit = std::abs(value) % 10;
+    std::string text = value < 0 ? "-" : "";
+    if (whole > 0 || digit == 0) text += std::to_string(whole);
+    return digit > 0 ? text + "." + std::to_string(digit) : text;
+}
+
+/// Each line from its first point on by steps: their numbers are shorter than those of points.
 std::string path_of(const std::vector<Line>& lines) {
     std::string d;
     for (const Line& line : lines) {
         const char* command = "M";
+        long x = 0, y = 0;
         for (const Point p : straightened(by_columns(line))) {
-            d += fmt::format("{}{:.1f},{:.1f}", command, p.x, p.y);
-            command = *command == 'M' ? "L" : " ";
+            const long to_x = std::lround(10 * p.x), to_y = std::lround(10 * p.y);
+            d += command + tenths(to_x - x) + "," + tenths(to_y - y);
+            command = *command == 'M' ? "l" : " ";
+            x = to_x, y = to_y;
         }
     }
     return d;
