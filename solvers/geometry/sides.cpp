@@ -1,4 +1,5 @@
 #include "geometry/sides.hpp"
+#include "scene/names.hpp"
 
 #include <stdexcept>
 
@@ -25,8 +26,6 @@ Side<D> make_side(const scene::Table& table) {
     return side;
 }
 
-std::string path_of(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
-
 }  // namespace
 
 template <int D>
@@ -34,7 +33,7 @@ Sides<D>::Sides(const scene::Scene& scene) {
     for (int axis = 0; axis < D; ++axis) {
         const std::string letter(1, "xyz"[axis]);
         for (int end = 0; end < 2; ++end) {
-            const std::string path = path_of(axis, end);
+            const std::string path = scene::side_key(axis, end);
             if (scene.has(path)) side(axis, end) = make_side<D>(scene.root().table(path));
         }
         if (!scene.has("grid.periodic")) continue;
@@ -47,7 +46,7 @@ template <int D>
 void Sides<D>::read(const scene::Scene& scene, const std::string& field) {
     for (int axis = 0; axis < D; ++axis)
         for (int end = 0; end < 2; ++end)
-            if (const auto path = path_of(axis, end) + "." + field; scene.has(path))
+            if (const auto path = scene::side_key(axis, end) + "." + field; scene.has(path))
                 (field == "temperature" ? side(axis, end).temperature : side(axis, end).smoke) = scene.number(path);
 }
 

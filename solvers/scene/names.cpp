@@ -90,4 +90,6 @@ std::string number_text(double value) {
     return fmt::format("{}", value);
 }
 
+std::string side_key(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
+
 }  // namespace weir::scene

@@ -22,6 +22,9 @@ std::string quote(std::string_view text);                      // "text", contro
 std::string quote_all(const std::vector<std::string>& names);  // "a", "b" and "c"
 std::string number_text(double value);                         // shortest text that reads back exactly
 
+/// The key of a side of the domain: "sides.x_min" for axis 0 and end 0.
+std::string side_key(int axis, int end);
+
 /// Takes the first key off a path: of "grid.cells" it gives "grid" and leaves "cells".
 inline std::string_view first_part(std::string_view& path) {
     const std::string_view part = path.substr(0, path.find('.'));

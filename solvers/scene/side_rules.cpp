@@ -10,17 +10,16 @@
 namespace weir::scene {
 namespace {
 
-std::string side_name(int axis, int end) { return fmt::format("sides.{}_{}", axis_name(axis), end ? "max" : "min"); }
-std::string kind_of(const Table& root, int axis, int end) { return root.text_or(side_name(axis, end) + ".kind", ""); }
+std::string kind_of(const Table& root, int axis, int end) { return root.text_or(side_key(axis, end) + ".kind", ""); }
 
 /// `grid.periodic` names the axis: its sides may repeat that, but have no other kind.
 void make_periodic(Table& root, int axis, const Report& report) {
     for (int end = 0; end < 2; ++end) {
-        Table* side = root.find_table(side_name(axis, end));
+        Table* side = root.find_table(side_key(axis, end));
         const auto kind = kind_of(root, axis, end);
         if (!side || kind == "periodic") continue;
-        if (const Place place = root.place(side_name(axis, end) + ".kind"); place.column > 0) {
-            report(place, fmt::format("{} is {}, but grid.periodic names {}", side_name(axis, end), quote(kind), quote(axis_name(axis))));
+        if (const Place place = root.place(side_key(axis, end) + ".kind"); place.column > 0) {
+            report(place, fmt::format("{} is {}, but grid.periodic names {}", side_key(axis, end), quote(kind), quote(axis_name(axis))));
         } else {
             Table periodic;
             periodic.set("kind", std::string("periodic"));
@@ -42,8 +41,8 @@ void check_periodic(Table& root, int dim, const Report& report) {
         if (by_list) {
             make_periodic(root, axis, report);
         } else if ((kinds[0] == "periodic") != (kinds[1] == "periodic") && !kinds[0].empty() && !kinds[1].empty()) {
-            report(root.place(side_name(axis, first) + ".kind"),
-                   fmt::format("{} is periodic, but {} is {}", side_name(axis, first), side_name(axis, 1 - first),
+            report(root.place(side_key(axis, first) + ".kind"),
+                   fmt::format("{} is periodic, but {} is {}", side_key(axis, first), side_key(axis, 1 - first),
                                quote(kinds[static_cast<std::size_t>(1 - first)])),
                    "make both ends of an axis periodic, or neither");
         }
@@ -67,10 +66,10 @@ void check_sides(Table& root, int dim, const Report& report) {
     check_periodic(root, dim, report);
     for (int axis = 0; axis < dim; ++axis)
         for (int end = 0; end < 2; ++end) {
-            Table* side = root.find_table(side_name(axis, end));
+            Table* side = root.find_table(side_key(axis, end));
             if (!side) continue;
             if (kind_of(root, axis, end) == "open") side->set("kind", std::string("outflow"), side->place("kind"));
-            check_moving_wall(*side, axis, side_name(axis, end), report);
+            check_moving_wall(*side, axis, side_key(axis, end), report);
         }
 }
 

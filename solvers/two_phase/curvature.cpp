@@ -98,10 +98,8 @@ template <int D>
 real mean_around(const Grid<real, D>& kappa, const Around<D>& around, const Index<D>& I) {
     real sum = 0;
     int count = 0;
-    for (int code = 0; code < (D == 2 ? 9 : 27); ++code) {
-        Index<D> J = I;
-        for (int d = 0, rest = code; d < D; ++d, rest /= 3) J[d] += rest % 3 - 1;
-        const real there = kappa(around(J));
+    for (int k = 0; k < block_cells<D>; ++k) {
+        const real there = kappa(around(I + block_offset<D>(k)));
         if (there != no_curvature) sum += there, ++count;
     }
     return count > 0 ? sum / count : no_curvature;

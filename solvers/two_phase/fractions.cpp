@@ -102,11 +102,8 @@ namespace {
 template <int D>
 std::vector<Index<D>> neighbours() {
     std::vector<Index<D>> list;
-    for (int code = 0; code < (D == 2 ? 9 : 27); ++code) {
-        Index<D> by;
-        for (int d = 0, rest = code; d < D; ++d, rest /= 3) by[d] = rest % 3 - 1;
-        if (by != Index<D>{}) list.push_back(by);
-    }
+    for (int k = 0; k < block_cells<D>; ++k)
+        if (const Index<D> by = block_offset<D>(k); by != Index<D>{}) list.push_back(by);
     return list;
 }
 

@@ -25,6 +25,16 @@ Strides<D> strides_of(const Padded<D>& q) {
     return stride;
 }
 
+/// Cells of a block of three along each axis, and the offset of the k-th of them from the middle one.
+template <int D>
+constexpr int block_cells = D == 2 ? 9 : 27;
+template <int D>
+Index<D> block_offset(int k) {
+    Index<D> by;
+    for (int d = 0; d < D; ++d, k /= 3) by[d] = k % 3 - 1;
+    return by;
+}
+
 /// The fraction of the fluid that enters at each end of each axis; no value: nothing enters there by itself.
 template <int D>
 using EnteringFractions = std::array<std::array<std::optional<real>, 2>, D>;

@@ -100,8 +100,7 @@ scene::SolverKind kind() {
                       "initial.temperature", "initial.smoke"};
     schema.why_without =
         "this solver has walls, inflows, p = 0 on open sides, periodic axes and solids at rest; \"mac_water\" has moving solids, bodies, "
-        "emitters "
-        "and heat";
+        "emitters and heat";
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},

@@ -8,16 +8,6 @@ namespace {
 
 constexpr real least_fraction = 1e-6;  // the plane of a cell with less of one phase has an uncertain normal
 
-constexpr int block(int dim) { return dim == 2 ? 9 : 27; }
-
-/// The k-th of the 3^D offsets, that of the cell itself among them.
-template <int D>
-Index<D> offset(int k) {
-    Index<D> by;
-    for (int d = 0; d < D; ++d, k /= 3) by[d] = k % 3 - 1;
-    return by;
-}
-
 }  // namespace
 
 template <int D>
@@ -29,8 +19,8 @@ ContinuedFractions<D>::ContinuedFractions(const MacState<D>& state, const Around
         for (std::size_t at = 0; at < layer.size(); ++at) {
             if (layer[at] != 0) continue;
             Closed closed{index_of<D>(layer.extent(), at), 0};
-            for (int k = 0; k < block(D); ++k)
-                if (layer(around(closed.cell + offset<D>(k))) == source) closed.sources |= std::uint32_t{1} << k;
+            for (int k = 0; k < block_cells<D>; ++k)
+                if (layer(around(closed.cell + block_offset<D>(k))) == source) closed.sources |= std::uint32_t{1} << k;
             if (closed.sources != 0) layers_[number].push_back(closed);
         }
         for (const Closed& closed : layers_[number]) layer(closed.cell) = static_cast<std::uint8_t>(source + 1);
@@ -43,9 +33,9 @@ real ContinuedFractions<D>::value(const Padded<D>& f, const Closed& closed) {
     const Strides<D> stride = strides_of(f);
     real below = 0, weights = 0, sum = 0;
     int count = 0;
-    for (int k = 0; k < block(D); ++k) {
+    for (int k = 0; k < block_cells<D>; ++k) {
         if ((closed.sources >> k & 1) == 0) continue;
-        const Index<D> by = offset<D>(k), J = closed.cell + by;
+        const Index<D> by = block_offset<D>(k), J = closed.cell + by;
         ++count;
         sum += f(J);
         if (f(J) < least_fraction || f(J) > 1 - least_fraction) continue;

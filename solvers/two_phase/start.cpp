@@ -40,8 +40,6 @@ geometry::Sides<D> frictionless(geometry::Sides<D> sides) {
     return sides;
 }
 
-std::string side_name(int axis, int end) { return std::string("sides.") + "xyz"[axis] + (end == 0 ? "_min" : "_max"); }
-
 template <int D>
 EnteringFractions<D> entering_fractions(const scene::Scene& scene, const geometry::Sides<D>& sides) {
     EnteringFractions<D> entering;
@@ -49,7 +47,7 @@ EnteringFractions<D> entering_fractions(const scene::Scene& scene, const geometr
         for (const int end : {0, 1})
             if (sides.side(a, end).kind == geometry::SideKind::inflow)
                 entering[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)] =
-                    scene.root().table(side_name(a, end)).text("fluid") == "liquid" ? 1 : 0;
+                    scene.root().table(scene::side_key(a, end)).text("fluid") == "liquid" ? 1 : 0;
     return entering;
 }
 
@@ -109,7 +107,7 @@ void TwoPhase<D>::refuse_sides(const scene::Scene& scene) const {
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1})
             if (state_.sides.side(a, end).kind == geometry::SideKind::inflow && !has_open_sides())
-                scene.refuse(side_name(a, end),
+                scene.refuse(scene::side_key(a, end),
                              "the inflow needs an open side: both fluids are incompressible, and what enters cannot leave",
                              "add a side of kind \"outflow\" (p = 0)");
 }

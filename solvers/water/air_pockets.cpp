@@ -163,16 +163,18 @@ std::vector<real> AirPockets<D>::mean_pressures(const Grid<real, D>& p) const {
     return mean;
 }
 
-/// Pressures from Q. Pockets that appeared in liquid, and unresolved ones, have that of the last step instead, and Q follows.
+/// Pressures from Q. Pockets that appeared in liquid, and those that have grown from unresolved ones, have that of the last step instead,
+/// and Q follows.
 template <int D>
-void AirPockets<D>::set_pressures(const MacState<D>& state, const std::vector<char>& appeared) {
+void AirPockets<D>::set_pressures(const MacState<D>& state, const std::vector<char>& appeared, const std::vector<char>& was_resolved) {
     const real least_cells = D == 2 ? 9 : 27;
     const std::vector<real> mean = mean_pressures(state.p);
     for (std::size_t k = 0; k < pockets_.size(); ++k) {
         Pocket& pocket = pockets_[k];
         pocket.resolved = pocket.capacity >= least_cells;
         const real outer = law_ ? law_->pressure + mean[k] : 0;
-        if (appeared[k] || (law_ && !pocket.resolved && !restored_)) pocket.content = content_per_volume(outer) * pocket.volume;
+        const bool grown = law_ && pocket.resolved && !was_resolved[k];
+        if (appeared[k] || grown) pocket.content = content_per_volume(outer) * pocket.volume;
         if (law_) pocket.pressure = std::pow(pocket.content / pocket.volume, law_->exponent);
     }
 }
@@ -182,6 +184,7 @@ void AirPockets<D>::carry_content(const MacState<D>& state, const Grid<int, D>& 
                                   const std::vector<Pocket>& old) {
     std::vector<real> all(old.size() + 1, 0);
     std::vector<char> known(pockets_.size(), 0), was_pocket(pockets_.size(), 0), appeared(pockets_.size(), 0);
+    std::vector<char> was_resolved(pockets_.size(), 0);
     const real of_open_air = content_per_volume(law_ ? law_->pressure : 0);
     const Overlaps list = old_label.empty() ? Overlaps{} : overlaps(state, old_label, old_air, old.size());
     for (const auto& [labels, volume] : list) all[static_cast<std::size_t>(labels.first)] += volume;
@@ -191,17 +194,19 @@ void AirPockets<D>::carry_content(const MacState<D>& state, const Grid<int, D>& 
         const auto k = static_cast<std::size_t>(to) - 1;
         known[k] = 1;
         if (from == open_air) {
+            was_resolved[k] = 1;
             pockets_[k].content += of_open_air * volume * frame_.cell_volume();
             continue;
         }
         was_pocket[k] = 1;
+        was_resolved[k] |= static_cast<char>(old[static_cast<std::size_t>(from) - 1].resolved);
         pockets_[k].content += old[static_cast<std::size_t>(from) - 1].content * volume / all[static_cast<std::size_t>(from)];
     }
     for (std::size_t k = 0; k < pockets_.size(); ++k) {
-        if (!was_pocket[k]) pockets_[k].content = of_open_air * pockets_[k].volume;
+        if (!was_pocket[k]) pockets_[k].content = of_open_air * pockets_[k].volume, was_resolved[k] = 1;
         appeared[k] = !old_label.empty() && !known[k];
     }
-    set_pressures(state, appeared);
+    set_pressures(state, appeared, was_resolved);
 }
 
 template <int D>
@@ -212,7 +217,6 @@ void AirPockets<D>::find(const MacState<D>& state) {
     label_components(state);
     measure(state);
     carry_content(state, old_label, old_air, old);
-    restored_ = false;
 }
 
 template <int D>
@@ -231,7 +235,7 @@ template <int D>
 real AirPockets<D>::elastic_energy() const {
     real sum = 0;
     for (const Pocket& pocket : pockets_) {
-        if (!law_) continue;
+        if (!law_ || !pocket.resolved) continue;
         const real gamma = law_->exponent, p0 = law_->pressure, V = pocket.volume, V0 = pocket.content / content_per_volume(p0);
         const real stored = gamma > 1 ? (pocket.pressure * V - p0 * V0) / (gamma - 1) : p0 * V0 * std::log(V0 / V);
         sum += stored + p0 * (V - V0);
@@ -258,7 +262,6 @@ void AirPockets<D>::restore(const Checkpoint& from) {
     std::vector<real> content(from.held<real>("water.air_content").all);
     from.get("water.air_content", std::span<real>(content));
     pockets_.assign(content.size(), Pocket{});
-    restored_ = true;
     for (std::size_t k = 0; k < content.size(); ++k) pockets_[k].content = content[k];
     for (const int label : label_.values())
         if (label < no_air || label > static_cast<int>(content.size()))

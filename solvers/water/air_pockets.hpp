@@ -2,7 +2,7 @@
 // const, Poisson 1823), or its volume where the gas is incompressible: Q = V. Where pockets merge Q is added; where one splits, each part
 // takes its share of the volume; air that was open is enclosed at the pressure of the open air. The pressure of a pocket follows from its
 // volume, so it does not drift. In a pocket of less than three cells across it would follow the error of the volume: there the gas is
-// incompressible in this step, and has the pressure of the liquid.
+// incompressible in this step, and Q is carried on for when the pocket merges.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "free_surface/level_set.hpp"
@@ -58,8 +58,8 @@ public:
     /// Mean of p over the cells of the largest pocket [Pa].
     real mean_pressure(const Grid<real, D>& p) const;
 
-    /// Σ ∫ (p₀ − p) dV from the volume V₀ at the pressure p₀ of the open air, p₀ V₀^γ = p V^γ; 0 for incompressible gas [J]. Additive where
-    /// pockets merge or split at one pressure.
+    /// Of resolved pockets, Σ ∫ (p₀ − p) dV from the volume V₀ at the pressure p₀ of the open air, p₀ V₀^γ = p V^γ; 0 for incompressible
+    /// gas [J]. Additive where pockets merge or split at one pressure.
     real elastic_energy() const;
 
     void save(Checkpoint& to) const;
@@ -81,7 +81,7 @@ private:
     void carry_content(const MacState<D>& state, const Grid<int, D>& old_label, const Grid<real, D>& old_air,
                        const std::vector<Pocket>& old);
     Overlaps overlaps(const MacState<D>& state, const Grid<int, D>& old_label, const Grid<real, D>& old_air, std::size_t old_count) const;
-    void set_pressures(const MacState<D>& state, const std::vector<char>& appeared);
+    void set_pressures(const MacState<D>& state, const std::vector<char>& appeared, const std::vector<char>& was_resolved);
     std::vector<real> mean_pressures(const Grid<real, D>& p) const;
     /// Q of a unit of volume at an absolute pressure.
     real content_per_volume(real pressure) const { return law_ ? std::pow(std::max(pressure, real(1)), 1 / law_->exponent) : 1; }
@@ -95,7 +95,6 @@ private:
     Grid<real, D> air_;  // volume of air in each air cell [cells]
     std::vector<Pocket> pockets_;
     bool has_open_air_ = false;
-    bool restored_ = false;  // since the last find()
     std::vector<std::size_t> stack_;
 };
 

@@ -107,6 +107,15 @@ real flooding_constant(const RunRecord& run, const Reference&) {
     return root(liquid) + root(gas);
 }
 
+/// The figure of an observed metric.
+auto over_time(const char* metric, const char* title, const char* y) {
+    return [=](const RunRecord& run, const Reference&) {
+        Curve c = run.series(metric);
+        c.label = "weir";
+        return Panel{.title = title, .x = {"t [s]"}, .y = {y}, .curves = {c}};
+    };
+}
+
 }  // namespace
 
 std::vector<Metric> bubble_metrics() {
@@ -121,12 +130,7 @@ std::vector<Metric> bubble_metrics() {
                  const std::vector<real> all = run.series("bubble.least_circularity").y;
                  return *std::min_element(all.begin(), all.end());
              },
-         .figure =
-             [](const RunRecord& run, const Reference&) {
-                 Curve c = run.series("bubble.least_circularity");
-                 c.label = "weir";
-                 return Panel{.title = "Circularity", .x = {"t [s]"}, .y = {"circularity"}, .curves = {c}};
-             },
+         .figure = over_time("bubble.least_circularity", "Circularity", "circularity"),
          .observe = circularity},
         {.name = "swing.frequency_error",
          .unit = "",
@@ -136,12 +140,7 @@ std::vector<Metric> bubble_metrics() {
              [](const RunRecord& run, const Reference& ref) {
                  return std::abs(frequency(run.series("swing.frequency_error")) / ref.number("frequency") - 1);
              },
-         .figure =
-             [](const RunRecord& run, const Reference&) {
-                 Curve c = run.series("swing.frequency_error");
-                 c.label = "weir";
-                 return Panel{.title = "Quadrupole", .x = {"t [s]"}, .y = {"[m^(D+2)]"}, .curves = {c}};
-             },
+         .figure = over_time("swing.frequency_error", "Quadrupole", "[m^(D+2)]"),
          .observe = quadrupole},
         {.name = "bottle.flooding",
          .unit = "",
@@ -149,12 +148,7 @@ std::vector<Metric> bubble_metrics() {
                 "the run.",
          .quantity = Quantity::value,
          .measure = flooding_constant,
-         .figure =
-             [](const RunRecord& run, const Reference&) {
-                 Curve c = run.series("bottle.flooding");
-                 c.label = "weir";
-                 return Panel{.title = "Liquid out of the bottle", .x = {"t [s]"}, .y = {"[m^2]"}, .curves = {c}};
-             },
+         .figure = over_time("bottle.flooding", "Liquid out of the bottle", "[m^2]"),
          .observe = poured},
     };
 }

@@ -57,6 +57,32 @@ TEST_IN_2D_AND_3D("a pocket that is not resolved has the pressure of the liquid"
     EXPECT_NEAR(pockets.pockets()[0].pressure, 105000, 1e-8);
 }
 
+// The volume of a small part follows the error of the volume fractions beside it. It must neither make nor destroy gas.
+TEST_IN_2D_AND_3D("a part too small for the law gives back, when it merges, the content with which it left") {
+    Drawn<D> box;
+    water::AirPockets<D> pockets(box.frame, water::GasLaw{100000, 1.4}, box.surface, box.closed, &box.part);
+    const auto whole = [](const Index<D>& I) { return I[0] < 7 && I[1] < 10; };
+    // as large as `cells`, behind a wall of liquid in the corner
+    const auto apart = [&](int cells) {
+        return [=](const Index<D>& I) {
+            const bool small = I[0] < cells && I[1] < 2 && I[D - 1] < 2;
+            return small || (whole(I) && !(I[0] <= cells && I[1] <= 2 && I[D - 1] <= 2));
+        };
+    };
+    box.draw(whole);
+    pockets.find(box.state);
+    for (const int cells : {2, 3, 1}) {
+        box.draw(apart(cells));
+        pockets.find(box.state);
+        ASSERT_EQ(pockets.pockets().size(), 2);
+        EXPECT_NE(pockets.pockets()[0].resolved, pockets.pockets()[1].resolved);
+    }
+    box.draw(whole);
+    pockets.find(box.state);
+    ASSERT_EQ(pockets.pockets().size(), 1);
+    EXPECT_NEAR(pockets.pockets()[0].pressure, 100000, 1e-8);
+}
+
 // p^(1/γ) V adds up: with V1 = V2 the merged pressure is ((p1^(1/γ) + p2^(1/γ)) / 2)^γ.
 TEST_IN_2D_AND_3D("pockets that merge add their content, and parts of a split one have its pressure") {
     Drawn<D> box;
