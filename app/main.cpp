@@ -76,10 +76,12 @@ int complain(const char* text, int exit_code) {
     return exit_code;
 }
 
+bool is_run(int argc, char** argv) { return argc > 1 && std::strcmp(argv[1], "run") == 0; }
+
 /// What mpirun starts several times is one run; everything else would do its work as many times.
 void join_ranks(int argc, char** argv) {
     if (weir::distributed::started_ranks() <= 1) return;
-    if (argc > 1 && std::strcmp(argv[1], "run") == 0) return weir::distributed::join();
+    if (is_run(argc, argv)) return weir::distributed::join();
     if (weir::distributed::started_rank() > 0) std::exit(weir::exit_bad_input);
     throw weir::BadInput("only weir run works in parallel (MPI): start any other command as one process");
 }
@@ -132,7 +134,7 @@ int guarded_run(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return complain("not enough memory: reduce grid.cells", weir::exit_bad_input);
     } catch (const std::exception& error) {
-        return complain((std::string("internal error of weir: ") + error.what()).c_str(), 70);  // EX_SOFTWARE of sysexits.h
+        return complain((std::string("internal error of weir: ") + error.what()).c_str(), weir::exit_internal_error);
     }
 }
 
@@ -140,7 +142,11 @@ int guarded_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     bound_spinning(argv);
-    const int exit_code = guarded_run(argc, argv);
-    weir::app::release_interrupts();
-    return weir::distributed::leave(exit_code, complaint);
+    const auto one = [&] {
+        const int exit_code = guarded_run(argc, argv);
+        weir::app::release_interrupts();
+        return weir::distributed::leave(exit_code, complaint);
+    };
+    const int forked = weir::distributed::forked_ranks();
+    return forked > 1 && is_run(argc, argv) ? weir::distributed::run_on_forked_ranks(forked, one) : one();
 }

@@ -13,7 +13,6 @@
 #include "output/frames.hpp"
 #include "output/run_log.hpp"
 #include "parallel/communicator.hpp"
-#include "parallel/mpi/ranks.hpp"
 #include "rigid/remark.hpp"
 #include "sim/frame_options.hpp"
 #include "sim/loop.hpp"
@@ -68,7 +67,7 @@ std::size_t memory_told(const std::string& wanted) {
 
 /// What stands in memory and in no file, the most that has stood in memory, and how long other processes were busy.
 output::RunLog::RankState state_of(const Simulation& simulation, std::size_t checkpoint) {
-    return {simulation.solver().bytes(), memory_told("RssAnon:"), memory_told("VmHWM:"), checkpoint, distributed::busy_seconds()};
+    return {simulation.solver().bytes(), memory_told("RssAnon:"), memory_told("VmHWM:"), checkpoint, communicator().busy_seconds()};
 }
 
 /// Where ranks have slept for a tenth of the run or more, because other processes were busy; else empty.

@@ -9,7 +9,8 @@
 
 namespace weir {
 
-enum ExitCode : int { exit_success = 0, exit_claim_failed = 1, exit_bad_input = 2, exit_numerical_failure = 3 };
+/// exit_internal_error: EX_SOFTWARE of sysexits.h.
+enum ExitCode : int { exit_success = 0, exit_claim_failed = 1, exit_bad_input = 2, exit_numerical_failure = 3, exit_internal_error = 70 };
 
 /// The input is invalid: exit code 2. The text states what was found and what is allowed.
 struct BadInput : std::runtime_error {

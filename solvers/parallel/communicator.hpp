@@ -76,6 +76,8 @@ public:
     virtual void exchange(std::span<const Message>) {}
     /// Returns whether stale (unfilled) ghosts are set to NaN, for a test: no code may read them.
     virtual bool poisons() const { return false; }
+    /// Total time in which this rank slept while waiting because other processes used its processor [s].
+    virtual double busy_seconds() const { return 0; }
     /// Returns whether whole fields are read on all ranks, so that each rank must store them whole.
     bool holds_whole() const { return holds_whole_; }
     void hold_whole(bool yes) { holds_whole_ = yes; }

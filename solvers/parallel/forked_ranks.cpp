@@ -1,6 +1,7 @@
 #include "parallel/forked_ranks.hpp"
 
 #include "core/parallel.hpp"
+#include "parallel/stale_ghosts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -192,6 +193,8 @@ void ForkedRanks::refresh(const Partition& cut, std::span<const Planes> arrays, 
         const char* next = received[static_cast<std::size_t>(peer)].data();
         if (peer != rank()) each(peer, rank(), [&](char* at, std::size_t bytes) { std::memcpy(at, next, bytes), next += bytes; });
     }
+    if (!poisons_) return;
+    for (const Planes& planes : arrays) poison_stale_ghosts(cut, *this, planes, ghost_planes, ring);
 }
 
 /// Every rank gets the entries [begins[r], begins[r + 1]) of each rank r.

@@ -3,6 +3,7 @@
 #include "parallel/communicator.hpp"
 #include "parallel/mpi/mpi_entry.hpp"
 #include "parallel/mpi/polling_wait.hpp"
+#include "parallel/stale_ghosts.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -18,8 +19,6 @@
 namespace weir::distributed {
 
 namespace {
-
-constexpr unsigned char poison_byte = 0xff;  // of NaN, single or double
 
 /// The exchange of one kind of array in a refresh.
 struct Plan {
@@ -64,7 +63,7 @@ public:
             }
         wait_for_requests();
         if (!poisons_) return;
-        for (const Planes& planes : arrays) poison(plan_of(cut, planes.count, ghost_planes, ring), planes);
+        for (const Planes& planes : arrays) poison_stale_ghosts(cut, *this, planes, ghost_planes, ring);
     }
 
     void gather(const Partition& cut, const Planes& planes) override {
@@ -143,7 +142,7 @@ public:
     }
 
     bool poisons() const override { return poisons_; }
-    double busy_seconds() const { return wait_.busy_seconds(); }
+    double busy_seconds() const override { return wait_.busy_seconds(); }
 
     int largest(int value) override {
         requests_.assign(1, MPI_REQUEST_NULL);
@@ -249,19 +248,6 @@ private:
         return plans_.back();
     }
 
-    /// For a test: sets every plane that is neither owned nor filled to NaN; no code may read stale ghosts.
-    void poison(const Plan& plan, const Planes& planes) const {
-        std::vector<char> known(static_cast<std::size_t>(planes.count), 0);
-        for (int plane = plan.cut.begin(rank()); plane < plan.cut.end(rank(), planes.count); ++plane)
-            known[static_cast<std::size_t>(plane)] = 1;
-        for (const auto& message : plan.messages)
-            for (int plane = message.planes.begin; !message.sends && plane < message.planes.end; ++plane)
-                known[static_cast<std::size_t>(plane)] = 1;
-        for (int plane = 0; plane < planes.count; ++plane)
-            if (!known[static_cast<std::size_t>(plane)] && (planes.held == nullptr || planes.held[plane] != 0))
-                std::fill_n(plane_at(planes, plane), planes.bytes, poison_byte);
-    }
-
     bool poisons_;
     /// Longer than a message takes, and than ranks differ in a pass when each has a processor of its own.
     PollingWait wait_{std::chrono::microseconds(2000)};
@@ -272,8 +258,6 @@ private:
     std::vector<MPI_Aint> places_;
 };
 
-const MpiCommunicator* joined = nullptr;
-
 }  // namespace
 
 }  // namespace weir::distributed
@@ -283,9 +267,5 @@ extern "C" weir::Communicator* weir_mpi_communicator() {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    auto* const slabs = new weir::distributed::MpiCommunicator(rank, ranks);
-    weir::distributed::joined = slabs;
-    return slabs;
+    return new weir::distributed::MpiCommunicator(rank, ranks);
 }
-
-extern "C" double weir_mpi_busy_seconds() { return weir::distributed::joined->busy_seconds(); }

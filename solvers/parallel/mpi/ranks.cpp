@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/library.hpp"
 #include "parallel/communicator.hpp"
+#include "parallel/forked_ranks.hpp"
 #include "parallel/mpi/mpi_entry.hpp"
 
 #include <algorithm>
@@ -54,10 +55,19 @@ int threads_of_rank() {
     return std::max(1, processors / here);
 }
 
-double busy_seconds() {
-    if (!communicator().several()) return 0;
-    const auto entry = reinterpret_cast<MpiBusyEntry>(mpi_function(mpi_busy_entry));
-    return entry ? entry() : 0;
+int forked_ranks() { return number_of({"WEIR_FORKED_RANKS"}, 1); }
+
+int run_on_forked_ranks(int ranks, const std::function<int()>& run) {
+    const auto body = [&](ForkedRanks& self) {
+        if (self.rank() > 0) print_nothing();
+        return std::to_string(run());
+    };
+    int exit_code = exit_success;
+    for (const ForkedEnd& end : fork_ranks(ranks, body, std::getenv("WEIR_HALO_POISON") != nullptr)) {
+        const int code = end.status == 0 ? std::atoi(end.said.c_str()) : end.status;
+        if (exit_code == exit_success || exit_code == exit_internal_error) exit_code = code == exit_success ? exit_code : code;
+    }
+    return exit_code;
 }
 
 void join() {

@@ -1,5 +1,6 @@
 // A program that mpirun has started several times: how the processes join and how they end together.
 #pragma once
+#include <functional>
 #include <string>
 
 namespace weir::distributed {
@@ -13,12 +14,15 @@ int started_rank();
 /// rank to its own processors.
 int threads_of_rank();
 
+/// Number of ranks that this program forks itself, without MPI, for tests: WEIR_FORKED_RANKS; 1 without it.
+int forked_ranks();
+/// run() as each of these ranks, in a process of its own with one thread unless it asks for more; output of ranks other than 0 is hidden.
+/// Returns the first exit code that is no success, and of these one by which weir ends before one of a rank that waited in vain.
+int run_on_forked_ranks(int ranks, const std::function<int()>& run);
+
 /// Makes communicator() the communicator of all ranks and hides the output of ranks other than 0. Throws BadInput where this weir was built
 /// without MPI. Does nothing for one process.
 void join();
-
-/// Total time in which this rank slept while waiting because other processes used its processor [s].
-double busy_seconds();
 
 /// Ends the program on all ranks. Where all ranks arrive they exit one after another and the result is `exit_code`. Where one failed alone,
 /// the others never arrive: it prints `complaint` (which rank 0 has printed where all failed alike) and aborts all ranks.

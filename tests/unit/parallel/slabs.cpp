@@ -4,6 +4,7 @@
 #include "support/forked_ranks.hpp"
 #include "support/test.hpp"
 
+#include <cmath>
 #include <csignal>
 #include <numeric>
 #include <set>
@@ -179,6 +180,29 @@ TEST("loops and sums over a grid follow its extent; over a replicated box they c
 }
 
 }  // namespace
+
+TEST("after a halo exchange a rank knows its own planes and its ghosts; where stale ghosts are poisoned, all others are NaN") {
+    constexpr int planes = 24, ranks = 3, ghosts = 2;
+    const Partition cut = equal_partition(planes, ranks);
+    for (const bool poisons : {false, true})
+        test::on_ranks(
+            ranks,
+            [&] {
+                const int here = communicator().rank();
+                std::vector<double> values(planes, -1);
+                for (int plane = cut.begin(here); plane < cut.end(here, planes); ++plane) values[static_cast<std::size_t>(plane)] = plane;
+                const Planes array{values.data(), sizeof(double), planes};
+                communicator().refresh(cut, {&array, 1}, ghosts, false);
+                for (int plane = 0; plane < planes; ++plane) {
+                    const double value = values[static_cast<std::size_t>(plane)];
+                    if (plane >= cut.begin(here) - ghosts && plane < cut.end(here, planes) + ghosts)
+                        EXPECT_EQ(value, plane);
+                    else
+                        EXPECT_TRUE(poisons ? std::isnan(value) : value == -1) << plane << ": " << value;
+                }
+            },
+            poisons);
+}
 
 TEST("of forked ranks that fail the cause is told, not its consequences") {
     const auto thrown = fork_ranks(3, [](ForkedRanks& self) -> std::string {
