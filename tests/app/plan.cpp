@@ -1,4 +1,4 @@
-// The advice of `weir plan`, followed: for every study, configurations that it can recommend (three, or all at full size) are measured,
+// The advice of `weir plan`, followed: for every study, configurations that it can recommend (two, or all at full size) are measured,
 // requested, run by the line that it prints, and compared with what it promised.
 // WEIR_PLAN_TABLES names a folder of tables that are taken as they stand (the published ones, or full-size ones), in place of fresh ones:
 // errors are judged, milliseconds only told, for they may be another machine's.
@@ -65,10 +65,10 @@ CostPoint measured_now(const Study& study, const CostCurve& curve, const Priced&
     return measure_study(one, options, sim::registry()).points.front();
 }
 
-/// The configurations that are followed: all at full size; otherwise the least expensive, the most accurate and one between them.
+/// The configurations that are followed: all at full size; otherwise the least expensive and the one in the middle.
 std::vector<Choice> followed_of(std::vector<Choice> rows) {
-    if (rows.size() <= 3 || full_size()) return rows;
-    return {rows.front(), rows[rows.size() / 2], rows.back()};
+    if (rows.size() <= 2 || full_size()) return rows;
+    return {rows.front(), rows[rows.size() / 2]};
 }
 
 /// Tables of this machine and of this build, with the configurations that the published ones recommend.

@@ -1,6 +1,6 @@
-// What ranks send, counted before a run by forked ranks (validation::count_messages), against what runs with MPI have counted: in the steps
-// by which one run is longer than another, so that neither beginning nor end counts. (Frames are not compressed: as many bytes at any
-// time.)
+// What ranks send, counted before a run by forked ranks (validation::count_messages), against what runs have counted: in the steps by which
+// one run is longer than another, so that neither beginning nor end counts. (Frames are not compressed: as many bytes at any time.) At ci size
+// one scene of each kind of message runs with MPI, which counts for itself; the others on forked ranks.
 #include "app/process.hpp"
 #include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
@@ -42,13 +42,13 @@ public:
 
     scene::Scene scene() const { return scene::read(folder_.path() / "scene.toml", sim::schemas()); }
 
-    /// With that number of ranks, up to a time [s].
-    Run run(int ranks, double end) const {
+    /// With that number of ranks, of MPI or forked, up to a time [s].
+    Run run(int ranks, double end, bool forked) const {
         const auto out = folder_.path() / fmt::format("out-{}-{}", ranks, end);
         const std::string command = fmt::format(
-            "bash -c 'source {}/tests/support/mpirun.sh; over {} {} run {} --quiet --threads 1 --out {} --set time.end={}' >{} 2>&1 "
+            "bash -c 'source {}/tests/support/mpirun.sh; FORKED={} over {} {} run {} --quiet --threads 1 --out {} --set time.end={}' >{} 2>&1 "
             "</dev/null",
-            WEIR_SOURCE_DIR, ranks, WEIR_EXECUTABLE, (folder_.path() / "scene.toml").string(), out.string(), end,
+            WEIR_SOURCE_DIR, forked ? "yes" : "", ranks, WEIR_EXECUTABLE, (folder_.path() / "scene.toml").string(), out.string(), end,
             (folder_.path() / "log").string());
         EXPECT_EQ(std::system(command.c_str()), 0) << test::text_of(folder_.path() / "log");
         return {json::parse(test::text_of(out / "run.json"), nullptr, false), test::rows_of(out / "steps.csv")};
@@ -62,15 +62,17 @@ private:
 struct Steps {
     double dt;
     int few, many;
+    bool mpi = false;  // at ci size too
 };
 
 /// Messages and bytes of every rank, exactly.
 void expect_as_counted(const std::string& text, const std::vector<int>& ranks, const Steps& steps) {
-    if (const std::string why = no_ranks(); !why.empty()) GTEST_SKIP() << why;
+    const bool mpi = full_size() || steps.mpi;
+    if (const std::string why = no_ranks(); mpi && !why.empty()) GTEST_SKIP() << why;
     const Runs runs(text);
     for (const int n : ranks) {
         if (!full_size() && n != ranks.back()) continue;  // the last has a rank between two cuts, and one at each end as every other number
-        const Run few = runs.run(n, steps.few * steps.dt), many = runs.run(n, steps.many * steps.dt);
+        const Run few = runs.run(n, steps.few * steps.dt, !mpi), many = runs.run(n, steps.many * steps.dt, !mpi);
         ASSERT_EQ(few.steps(), static_cast<std::size_t>(steps.few));
         ASSERT_EQ(many.steps(), static_cast<std::size_t>(steps.many));
         const auto counted = validation::count_messages(runs.scene(), n, steps.few, steps.many - steps.few).sent;
@@ -106,7 +108,7 @@ TEST("mac: a closed room in 3D with smoke, heat, buoyancy and confinement sends 
         "effects = { buoyancy = { alpha = 0.1, beta = 0.2, ambient = 293.0 }, confinement = { epsilon = 0.2 } }\n"
         "emitters = [ { shape = \"sphere\", centre = [0.25, 0.15, 0.24], radius = 0.1, smoke = 1.0, temperature = 343.0 } ]\n"
         "scheme.poisson = { fixed = true, max_iterations = 2 }\noutput = { every = 1.0, compression = \"none\" }\n",
-        {2, 3}, {1e-3, 3, 8});
+        {2, 3}, {1e-3, 3, 8, true});
 }
 
 TEST("mac: around a periodic cut axis, and by a method that every rank runs for itself, as counted") {
@@ -170,7 +172,7 @@ TEST("sph: particles at rest send what was counted, with both ways to find densi
 
 TEST("pbf: particles at rest send what was counted") {
     expect_as_counted(still + "solver = \"pbf\"\nscheme = { support = 2.0, iterations = 5, warm_start = 0.0 }\n", {2}, {1e-4, 10, 30});
-    expect_as_counted(still + "solver = \"pbf\"\nscheme = { support = 2.0, iterations = 3 }\n", {2, 3}, {1e-4, 10, 30});
+    expect_as_counted(still + "solver = \"pbf\"\nscheme = { support = 2.0, iterations = 3 }\n", {2, 3}, {1e-4, 10, 30, true});
 }
 
 TEST("tallcell: deep water at rest sends what was counted, around the cut axis too, and in 2D nothing but what the run does") {
@@ -187,7 +189,7 @@ TEST("tallcell: deep water at rest sends what was counted, around the cut axis t
                           "dim = 3\ngrid = { cells = [64, 32, 64], size = [1.28, 0.64, 1.28] }\nscheme.columns = \"uniform\"\n"
                           "liquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [1.28, 0.6, 1.28] } ]\n"
                           "effects.gravity = { g = [0.0, -9.81, 0.0] }\n",
-                      {2}, {1e-4, 2, 4});
+                      {2}, {1e-4, 2, 4, true});
     expect_as_counted(deep +
                           "dim = 2\ngrid = { cells = [16, 40], size = [0.16, 0.4] }\n"
                           "liquid = [ { shape = \"box\", min = [0.0, 0.0], max = [0.16, 0.3] } ]\n",
@@ -229,7 +231,7 @@ TEST("waves: seas and basins with and without water below them send what was cou
     expect_as_counted(field + down + sheet + sea(""), {2, 3}, {1e-3, 5, 15});
     expect_as_counted(field + down + sheet + sea(", choppiness = 0.2"), {2, 3}, {1e-3, 5, 15});  // and it does not fold
     expect_as_counted(field + foam + sheet + sea(", choppiness = 1.0, velocity = false"), {3}, {1e-3, 5, 15});
-    expect_as_counted(field + down + water + sea(""), {2, 3}, {1e-3, 5, 15});
+    expect_as_counted(field + down + water + sea(""), {2, 3}, {1e-3, 5, 15, true});
     const std::string basin =
         "waves = { model = \"basin\" }\nliquid = [ { shape = \"box\", min = [0.0, -6.0, 0.0], max = [90.0, 0.0, 132.0] }, "
         "{ shape = \"sphere\", centre = [20.0, -2.0, 30.0], radius = 3.0 } ]\n";
@@ -267,7 +269,7 @@ std::pair<int, std::string> said(std::vector<std::string> arguments) {
 TEST(
     "what each rank of mac will hold is estimated within a fifth, and of mac_water within a third, of tallcell, heightfield and waves "
     "within a fifth") {
-    if (const std::string why = no_ranks(); !why.empty()) GTEST_SKIP() << why;
+    if (const std::string why = no_ranks(); full_size() && !why.empty()) GTEST_SKIP() << why;
     const auto compare = [](const std::string& text, double end, double wrong) {
         const Runs runs(text);
         const auto scene = runs.scene();
@@ -275,7 +277,7 @@ TEST(
         f.held = sim::estimate_memory(scene, sim::registry());
         f.count = 1, f.ms = 1;
         for (const int ranks : {2, 4}) {
-            const Run run = runs.run(ranks, end);
+            const Run run = runs.run(ranks, end, !full_size());
             const validation::ParallelEstimate told = validation::estimate_in_parallel(scene, f, ranks, validation::Link{1e-6, 1e9, ""});
             for (int rank = 0; rank < ranks; ++rank)
                 EXPECT_NEAR(told.bytes[static_cast<std::size_t>(rank)] / static_cast<double>(run.sent("solver_bytes", rank)), 1, wrong)

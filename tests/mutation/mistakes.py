@@ -81,6 +81,16 @@ def known_tests():
     return names
 
 
+def is_expression(text):
+    """Whether parentheses match and nothing but an operand is at either end; whether the text compiles is found by building it."""
+    depth = 0
+    for c in text:
+        depth += (c in "([{") - (c in ")]}")
+        if depth < 0 or (c == ";" and depth == 0):
+            return False
+    return depth == 0 and not text.rstrip().endswith(("||", "&&", "+", "-", "*", "/", ",", "="))
+
+
 def read_list():
     mistakes, number = [], 0
     tests = known_tests()
@@ -100,6 +110,9 @@ def read_list():
                 if not found:
                     PROBLEMS.append(f"{m.name}: there is no test {pattern}")
                 named += [t for t in found if t not in named]
+            for part in (m.before, m.after):
+                if m.kind == "expression" and not is_expression(part):
+                    PROBLEMS.append(f"{m.name}: {part!r} is no whole expression")
             m.tests = named
             place(m)
             mistakes.append(m)
@@ -127,6 +140,11 @@ def place(m):
     if count != 1:
         return PROBLEMS.append(f"{m.name}: its 'before' stands {count} times in {m.file}{' within the text given' if m.within else ''}, not once")
     m.begin = text.index(m.before, first, last)
+    if m.kind == "expression" and text[:m.begin].endswith((".", "->")):
+        PROBLEMS.append(f"{m.name}: {m.before!r} is a part of an expression: a member of what stands before it")
+    line = text[text.rindex("\n", 0, m.begin) + 1:m.end]
+    if re.match(r"\s*((inline|static) )*constexpr [^()]*=", line):
+        PROBLEMS.append(f"{m.name}: a constant expression cannot be switched")
     m.end = m.begin + len(m.before)
     m.lines = (text.count("\n", 0, m.begin) + 1, text.count("\n", 0, m.end) + 1)
 

@@ -102,7 +102,7 @@ int stability_command(const StabilityOptions& options, const Solvers& solvers) {
             for (const Stress& s : study.stresses) fmt::print("{:24} {:16} {:16} {}\n", study.name, s.name, s.method, s.hard_because);
         return exit_success;
     }
-    if (!options.compare.empty()) return compare_limits(studies, options.compare, solvers);
+    if (!options.compare.empty()) return compare_limits(studies, options.size, options.compare, solvers);
     output::require_writable(options.out);
     const output::FolderLock lock(options.out);
     const bool talk = !options.quiet && isatty(STDERR_FILENO);

@@ -36,7 +36,7 @@ nlohmann::json limits_json(const StressStudy& study, const std::vector<Limit>& l
 Numbers numbers_of(const std::vector<Limit>& limits);
 /// Whether the limits are where they were published, by a run at either end of each; where they were found with other rounding, or none
 /// are published, whether their guaranteed ranges pass. The exit code of the command.
-int compare_limits(const std::vector<StressStudy>& studies, const std::filesystem::path& published, const Solvers& solvers);
+int compare_limits(const std::vector<StressStudy>& studies, Size size, const std::filesystem::path& published, const Solvers& solvers);
 std::string limits_markdown(const nlohmann::json& study);
 /// Open targets beyond the guaranteed ranges of all studies; empty where there are none.
 std::string open_targets_markdown(const std::vector<nlohmann::json>& studies);

@@ -49,6 +49,7 @@ struct Stress {
     std::optional<real> open_target{};  // above `guaranteed`, not met: listed, and an error once it is met
     std::string not_reached{};          // why
     bool nested = false;                // a run at one value contains those at all lesser ones: the end is tried first
+    bool slow = false;                  // a comparison at ci size checks the guaranteed range only
     std::int64_t steps = 0;             // a run ends here if its scene has not ended before
     bool cut = false;                   // before the preconditions hold: preconditions at the end are not checked
     Variant base{};

@@ -88,6 +88,10 @@ std::vector<Key> axis_keys() {
                   text("floor_why", "Rationale of the guaranteed range."),
                   positive("asked", "Open target beyond the floor, not met: it is listed, and an error once it is met."),
                   text("not_reached", "Reason why it is not met."),
+                  {.name = "slow",
+                  .type = Type::flag,
+                  .doc = "A comparison at ci size runs the end of the guaranteed range only; at full size both sides of the limit.",
+                  .fallback = false},
                   {.name = "nested",
                   .type = Type::flag,
                   .doc = "A run at one value includes those at all smaller ones (steps, time): the last value is tried first.",
@@ -207,9 +211,11 @@ Stress stress_of(const Table& axis, const Variant& method, VariantReader& reader
              .open_target = optional_number(axis, "asked"),
              .not_reached = axis.text_or("not_reached", ""),
              .nested = axis.flag("nested"),
+             .slow = axis.flag("slow"),
              .base = method};
     if (s.low >= s.high) reader.problem(axis.place("low"), "\"low\" must be less than \"high\"");
     if (s.guaranteed && s.guaranteed_why.empty()) reader.problem(axis.place("floor"), "\"floor\" needs a \"floor_why\"");
+    if (s.slow && !s.guaranteed) reader.problem(axis.place("slow"), "\"slow\" needs a \"floor\": nothing would be compared at ci size");
     if (s.open_target && s.not_reached.empty()) reader.problem(axis.place("asked"), "\"asked\" needs a \"not_reached\"");
     if (s.open_target && (!s.guaranteed || *s.guaranteed >= *s.open_target))
         reader.problem(axis.place("asked"), "\"asked\" needs a \"floor\" that is smaller");

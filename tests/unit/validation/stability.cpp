@@ -183,6 +183,29 @@ TEST("published limits are compared with the code by a run at either end: one th
     EXPECT_NE(testing::internal::GetCapturedStderr().find("its limit is not published"), std::string::npos);
 }
 
+TEST("of a slow axis a comparison at ci size runs the guaranteed range alone, and at full size both sides of the limit") {
+    const test::TemporaryFolder folder;
+    const auto slow = [&](real floor) {
+        return add(folder.path(), stalls + axis + "slow = true\nfloor = " + std::to_string(floor) + "\nfloor_why = \"w\"\n").string();
+    };
+    StabilityOptions options;
+    options.names = {slow(0.05)}, options.quiet = true;
+    options.out = folder.path() / "out", options.publish = folder.path() / "page";
+    ASSERT_EQ(stability_command(options, test::fake_kinds()), exit_success);
+    options.publish = "", options.compare = folder.path() / "page";
+    const auto file = folder.path() / "page/pins/study.json";
+    std::ifstream stream(file);
+    auto pins = nlohmann::json::parse(stream);
+    for (auto& [name, value] : pins["numbers"].items()) value = 10 * value.get<double>();
+    std::ofstream(file) << pins.dump();
+    options.size = Size::ci;
+    EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_success) << "the limit is not looked at";
+    options.names = {slow(2)};  // it breaks before
+    EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_claim_failed);
+    options.names = {slow(0.05)}, options.size = Size::full;
+    EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_claim_failed);
+}
+
 TEST("a run that fails is a break, with its step and time") {
     const test::TemporaryFolder folder;
     const Stress stress = only(add(folder.path(), stalls + axis));
@@ -257,6 +280,7 @@ TEST("what is wrong in stability.toml is named") {
     EXPECT_NE(refusal("question = \"q\"\nwatch = [{ series = \"mass\", why = \"w\" }]\n" + axis).find("needs one of: at_most"),
               std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "floor = 1\n").find("\"floor\" needs a \"floor_why\""), std::string::npos);
+    EXPECT_NE(refusal("question = \"q\"\n" + axis + "slow = true\n").find("\"slow\" needs a \"floor\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "asked = 1\n").find("\"asked\" needs a \"not_reached\""), std::string::npos);
     EXPECT_NE(refusal("question = \"q\"\n" + axis + "floor = 1\nfloor_why = \"w\"\nasked = 1\nnot_reached = \"n\"\n")
                   .find("\"asked\" needs a \"floor\" that is smaller"),
