@@ -140,13 +140,15 @@ continues() {
         at_most "$(told "$folder" checkpoint_bytes "$rank")" $((2 * size / ranks + beside + 8192)) "read of $folder, rank $rank of $ranks"
     done
 }
-# continued_by_others ONE PARTS BESIDE4 BESIDE2 END: what two ranks have saved four continue, and what four have saved two, as one process does
+# continued_by_others ONE PARTS BESIDE4 BESIDE2 END: what four ranks have saved two continue, and at full size the other way round, as one
+# process does
 continued_by_others() {
-    continues 4 "$2-2" "$3" --set time.end="$5"
-    continues 2 "$2-4" "$4" --set time.end="$5"
     ends 0 "$weir" run --restart "$1" --checkpoint-every 1000 --quiet --threads 1 --set time.end="$5"
-    alike "$1" "$2-2"
+    continues 2 "$2-4" "$4" --set time.end="$5"
     alike "$1" "$2-4"
+    [ "$size" = full ] || return 0
+    continues 4 "$2-2" "$3" --set time.end="$5"
+    alike "$1" "$2-2"
 }
 # poisoned RANKS THREADS SCENE [--set ...]: stale ghosts are not numbers, and nothing changes
 poisoned() {
@@ -190,6 +192,8 @@ handed=$((4 * 1048576 + 2 * 8 * 32768)) huge_page=$((2 * 1048576))
 # Of every number of ranks and threads a few; WEIR_TEST_SIZE=full takes all.
 every="2 2,3 1,4 1"
 [ "$size" = ci ] || every="1 2,2 1,2 2,3 1,3 2,4 1,4 2"
+# of what each holds: most ranks hold the least
+numbers=$([ "$size" = ci ] && echo 4 || echo "2 4")
 sph="--set solver=sph --set time.end=0.02 --set output.every=0.01"
 case $part in
 2d)
@@ -502,7 +506,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
     ends 0 "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out one
     one=$(holds one)
     cells=$((48 * 48)) # of a plane
-    for ranks in 2 4; do
+    for ranks in $numbers; do
         ends 0 over $ranks "$weir" run plume.toml --checkpoint-every 1000 --quiet --threads 1 --out parts-$ranks
         alike one parts-$ranks
         holds_own parts-$ranks
@@ -534,7 +538,7 @@ storage) # each rank holds its own planes and those near its cuts, by its own co
         whole=$(holds $solver) layers=$((512 * 64))
         # a cell is as wide as the support: two spacings, or what pbf has without being told
         deep=$([ $solver = sph ] && echo 3 || echo 5) beside=$((2 * (deep * 64 + deep * deep * 8 + deep * deep * deep)))
-        for ranks in 2 4; do
+        for ranks in $numbers; do
             ends 0 over $ranks "$weir" run "${column[@]}" --out $solver-$ranks
             alike $solver $solver-$ranks
             for rank in $(seq 0 $((ranks - 1))); do
@@ -565,7 +569,7 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     # the pressure's small levels as above; lists of all rows and of runs of liquid: less than 64 bytes of each row
     pool="pool.toml $cells $((20000 * 8 / 7 * 128 + 64 * 32 * 256))"
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out one
-    for ranks in 2 4; do
+    for ranks in $numbers; do
         shared $pool $ranks one parts-$ranks
         # The last good state and a checkpoint beside it: 3 + 1 + 1 numbers, a flag and a layer of a cell, 6 numbers of 8 markers in each of the
         # lower half, each; and of a frame the own part of its largest array, three numbers a marker. A whole frame has 40 bytes per cell and 48
@@ -575,10 +579,10 @@ storage_water) # the same of liquid with markers, as much of it in every plane
     # of friction too: weights, vectors and lists of faces; of a pool that begins to slosh
     slosh="$viscous --set effects.gravity.g=[1.0,-9.81,0.0]"
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out viscous $slosh
-    for ranks in 2 4; do shared $pool $ranks viscous viscous-$ranks $slosh; done
+    for ranks in $numbers; do shared $pool $ranks viscous viscous-$ranks $slosh; done
     # in cells that are no cubes, half as many along x
     ends 0 "$weir" run pool.toml --checkpoint-every 1000 --quiet --threads 1 --out flat --set grid.cells=[16,32,256]
-    for ranks in 2 4; do shared $pool $ranks flat flat-$ranks --set grid.cells=[16,32,256]; done
+    for ranks in $numbers; do shared $pool $ranks flat flat-$ranks --set grid.cells=[16,32,256]; done
     # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes per face more; and before anything is made, each looks
     # at its share of the level set, 8 bytes per cell, to find where planes are cut
     continued_by_others one parts $((8 * cells + 8 * cells * 256 / 4)) $((8 * cells + 8 * cells * 256 / 2)) 0.004
@@ -600,7 +604,7 @@ storage_tall) # the same of tall cells: planes of the lattice, and lines of the 
     # precision and a flag, less than 128 bytes, in rows half as long again; and of a row of cells where the band begins and ends in it.
     deep="deep.toml $cells $((20000 * 4 / 3 * 128 * 3 / 2 + 8 * 48 * 256))"
     ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out one
-    for ranks in 2 4; do
+    for ranks in $numbers; do
         shared $deep $ranks one parts-$ranks
         # The last good state and a checkpoint beside it: 3 + 1 + 1 numbers, a flag and a layer of a cell, each; and of a frame the own part of
         # its largest array, three numbers a cell. A whole frame has 48 bytes per cell.
@@ -609,7 +613,7 @@ storage_tall) # the same of tall cells: planes of the lattice, and lines of the 
     # where the pressure is most of it: no tall cell anywhere
     regular='--set scheme.columns=uniform --set solids=[]'
     ends 0 "$weir" run deep.toml --checkpoint-every 1000 --quiet --threads 1 --out regular $regular
-    for ranks in 2 4; do shared $deep $ranks regular regular-$ranks $regular; done
+    for ranks in $numbers; do shared $deep $ranks regular regular-$ranks $regular; done
     # a rank whose last face of the cut axis is the domain's has a plane of 8 bytes per face more
     continued_by_others one parts $((8 * cells)) $((8 * cells)) 0.004
     ;;
@@ -630,7 +634,7 @@ storage_heightfield) # the same of rows of columns, with rain over a part of the
         [ $model = columns ] || lake+=($rain)
         ends 0 "$weir" run "${lake[@]}" --checkpoint-every 1000 --out $model
         one=$(holds $model)
-        for ranks in 2 4; do
+        for ranks in $numbers; do
             ends 0 over $ranks "$weir" run "${lake[@]}" --checkpoint-every 1000 --out $model-$ranks
             alike $model $model-$ranks
             holds_own $model-$ranks
@@ -666,7 +670,7 @@ storage_waves) # the same of a sea: rows of the sheet, and its waves by columns 
         cells=$([ $name = choppy ] && echo 512 || echo $((256 * 8))) points=$([ $name = choppy ] && echo 512 || echo 256) # of a plane
         ends 0 "$weir" run sea.toml $more --checkpoint-every 1000 --quiet --threads 1 --out $name
         one=$(holds $name)
-        for ranks in 2 4; do
+        for ranks in $numbers; do
             ends 0 over $ranks "$weir" run sea.toml $more --checkpoint-every 1000 --quiet --threads 1 --out $name-$ranks
             alike $name $name-$ranks
             holds_own $name-$ranks
@@ -696,7 +700,7 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
         local name=$1 surface=$2 tiny=$3 ranks
         shift 3
         ends 0 "$weir" run "$@" --quiet --threads 1 --out $name --set "output.surface={method=\"$surface\"}"
-        for ranks in 2 4; do
+        for ranks in $numbers; do
             ends 0 over $ranks "$weir" run "$@" --quiet --threads 1 --out $name-$ranks --set "output.surface={method=\"$surface\"}"
             alike $name $name-$ranks
             ends 0 over $ranks "$weir" run "$@" --quiet --threads 1 --out $name-plain-$ranks
@@ -714,7 +718,7 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
 	END
     made column density '--set grid.cells=[24,24,40] --set grid.size=[0.24,0.24,0.4] --set liquid=[{shape="box",min=[0.0,0.0,0.0],max=[0.24,0.12,0.3]}]' column.toml
     layer=$((24 * 12)) # of 512
-    for ranks in 2 4; do
+    for ranks in $numbers; do
         for rank in $(seq 0 $((ranks - 1))); do
             # A particle: 28 bytes, 48 given to those who read it and 48 as it comes; and then 24 of its velocity, 28 with images and room for
             # as many, 32 sorted, and 70 of samples and mesh, which is more. Cuts are at multiples of 8 planes, and less than 12 layers
@@ -733,8 +737,8 @@ storage_surface) # of the liquid's surface too each rank holds its part: its own
 	output = { every = 1.0, fields = ["pressure"] }
 	END
     made pool level_set '--set grid.cells=[32,32,80] --set grid.size=[0.32,0.32,0.8]' pool.toml
-    holds_own pool-2 pool-4
-    for ranks in 2 4; do
+    for ranks in $numbers; do holds_own pool-$ranks; done
+    for ranks in $numbers; do
         for rank in $(seq 0 $((ranks - 1))); do
             # Samples, of which two ghost planes on both sides and one; and less than 120 points and 240 triangles a plane: 150 and 60 bytes each.
             # The level set, the velocity and the markers of all would be 32 bytes per cell and 192 a cell of liquid. Pages as above.
