@@ -86,6 +86,18 @@ TEST_IN_2D_AND_3D("the multigrid needs at most 25 iterations for any coupling of
     }
 }
 
+TEST_IN_2D_AND_3D("every method solves it from any initial guess, and needs no iteration from the solution") {
+    const auto extent = extent_of<D>(D == 2 ? 24 : 16, D == 2 ? 20 : 12, 10);
+    const Pockets<D> problem(extent, 30.0);
+    const auto b = random_values<D>(extent, 7);
+    for (const std::string name : {"multigrid", "cg", "cg_jacobi", "cg_mic0", "eigen_iccg"}) {
+        auto p = random_values<D>(extent, 9);
+        solve(problem, name, p, b);
+        EXPECT_LT(residual_of(problem, p, b), 1.1e-9) << name;
+        EXPECT_LE(solve(problem, name, p, b).iterations, 1) << name << ": its residual is at the tolerance, up to rounding";
+    }
+}
+
 TEST("the method of cosine transforms has no such coupling") {
     EXPECT_EQ(poisson::zero_coupling(*poisson::make_solver<2>("dct", {})), nullptr);
 }

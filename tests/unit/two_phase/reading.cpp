@@ -54,6 +54,9 @@ TEST("the step is bounded by the fastest fluid, the tension or the gravity, and 
     TwoPhase<2> solver(two_phase_scene(collapse<2>(), {slack}));
     EXPECT_NEAR(solver.advised_dt(), 0.5 * std::sqrt(h / 9.81), 1e-15);
     EXPECT_NEAR(solver.stable_dt().dt, std::sqrt(h / 9.81), 1e-15);
+    // Brackbill, Kothe & Zemach 1992, eq. 61: (<rho> h^3 / (2 pi sigma))^(1/2) with the mean density, and half of it
+    const real mean = 0.5 * (1000 + 1);
+    EXPECT_NEAR(TwoPhase<2>(two_phase_scene(collapse<2>())).advised_dt(), 0.5 * std::sqrt(mean * h * h * h / (2 * pi * 10)), 1e-15);
 }
 
 }  // namespace reading_tests

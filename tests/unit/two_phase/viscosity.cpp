@@ -44,6 +44,23 @@ TEST("steady shear of two layers has one stress") {
     EXPECT_NEAR(u({{0, n - 1}}), 1 - stress * 0.5 * h / gas, 1e-6);
 }
 
+// cos(pi y) between walls without friction is a mode of the discrete operator, with the eigenvalue 2 (1 - cos(pi h)) / h^2; a step is
+// implicit (backward Euler). The tolerance of the viscous solve is 1e-10.
+TEST("a shear wave decays by its eigenvalue, implicit in time") {
+    const auto scene = two_phase_scene(layers("y_min = { kind = \"wall\" }"),
+                                       {{"liquid", "[ { shape = \"box\", min = [-1.0, -1.0], max = [2.0, 2.0] } ]"}});
+    TwoPhase<2> base(scene);
+    mac::MacState<2> state(scene, FieldPlan{});
+    for_each_cell(state.u[0].extent(), [&](const Index<2>& I) { state.u[0](I) = std::cos(pi * state.u.face_centre(0, I)[1]); });
+    mac::Padded<2> f(state.extent());
+    two_phase::FractionGhosts<2>(state.sides, -1, {}).fill_all(f, base.fraction());
+    const mac::MacVelocity<2> before = state.u;
+    const real h = 1.0 / 16, mu = 100, rho = 1000, dt = 0.3;
+    two_phase::Viscosity<2>(state, {{}, state}, mu, 10).apply(state, f, base.face_fractions(), {rho, 1}, dt);
+    const real decay = 1 / (1 + dt * mu / rho * 2 * (1 - std::cos(pi * h)) / (h * h));
+    for (int j = 0; j < 16; ++j) EXPECT_NEAR(state.u[0]({{2, j}}), decay * before[0]({{2, j}}), 1e-9);
+}
+
 // The tolerance of the viscous solve is 1e-10.
 TEST("walls without friction do not slow a flow, walls without slip do") {
     const auto speed_after = [](const std::string& sides) {
