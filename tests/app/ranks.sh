@@ -32,11 +32,11 @@ fi
 export OMP_NUM_THREADS=1 GOMP_SPINCOUNT=0 OPENBLAS_NUM_THREADS=1 # all three: weir need not start itself again with them
 
 fail() { echo "FAILED: $*"; tail -n 20 "$work"/log; exit 1; }
-# ends CODE COMMAND...: the command ends with it, within a minute
+# ends CODE COMMAND...: the command ends with it, within a minute; forked ranks, which run beside other tests, within two
 ends() {
     local wanted=$1 code=0
     shift
-    timeout 60 bash -c 'source "$0"; "$@"' "$mpirun_sh" "$@" </dev/null >"$work/log" 2>&1 || code=$?
+    timeout "$([ -n "$FORKED" ] && echo 120 || echo 60)" bash -c 'source "$0"; "$@"' "$mpirun_sh" "$@" </dev/null >"$work/log" 2>&1 || code=$?
     [ "$code" -eq "$wanted" ] || fail "ended with $code, not $wanted: $*"
 }
 says() { grep -q -- "$1" "$work/log" || fail "did not say: $1"; }
