@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # ranks.sh WEIR SCENES MPI_LIBRARY PART [MPIRUN]: weir run over several processes leaves what one process leaves, byte for byte; what cannot
 # run so is refused; and however a run ends, it ends on all ranks. With MPIRUN, that of another MPI than the one weir was built with, and
-# the library for that. Exit code 77 (skipped) where there is no MPI.
+# the library for that. Exit code 77 (skipped) where a part needs MPI and there is none.
 set -uo pipefail
 weir=$1 scenes=$2 library=$3 part=$4
 export MPIRUN=${5:-mpirun}
 size=${WEIR_TEST_SIZE:-ci}
 # What ranks compute does not depend on what carries their messages. At ci size most parts use forked ranks; full size takes MPI everywhere.
+# (CMakeLists.txt has the list of the others too: they run alone.)
 case $part in
 2d | particles_3d | petsc | ends | signals | busy) forked= ;;
 *) forked=$([ "$size" = full ] || echo yes) ;;

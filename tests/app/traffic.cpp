@@ -1,6 +1,6 @@
 // What ranks send, counted before a run by forked ranks (validation::count_messages), against what runs have counted: in the steps by which
-// one run is longer than another, so that neither beginning nor end counts. (Frames are not compressed: as many bytes at any time.) At ci size
-// one scene of each kind of message runs with MPI, which counts for itself; the others on forked ranks.
+// one run is longer than another, so that neither beginning nor end counts. (Frames are not compressed: as many bytes at any time.) At ci
+// size one scene of each kind of message runs with MPI, which counts for itself; the others on forked ranks.
 #include "app/process.hpp"
 #include "parallel/communicator.hpp"
 #include "sim/registry.hpp"
@@ -46,7 +46,8 @@ public:
     Run run(int ranks, double end, bool forked) const {
         const auto out = folder_.path() / fmt::format("out-{}-{}", ranks, end);
         const std::string command = fmt::format(
-            "bash -c 'source {}/tests/support/mpirun.sh; FORKED={} over {} {} run {} --quiet --threads 1 --out {} --set time.end={}' >{} 2>&1 "
+            "bash -c 'source {}/tests/support/mpirun.sh; FORKED={} over {} {} run {} --quiet --threads 1 --out {} --set time.end={}' >{} "
+            "2>&1 "
             "</dev/null",
             WEIR_SOURCE_DIR, forked ? "yes" : "", ranks, WEIR_EXECUTABLE, (folder_.path() / "scene.toml").string(), out.string(), end,
             (folder_.path() / "log").string());

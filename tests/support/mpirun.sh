@@ -1,6 +1,6 @@
 # over N [VARIABLE=VALUE ...] PROGRAM [ARGUMENT ...]: a program over N ranks, as it can be started where tests run: as root in a container,
-# on fewer processors than there are ranks. By $MPIRUN where it is set; without MPI where $FORKED is: weir forks its ranks, which start in a
-# third of the time. To be sourced.
+# on fewer processors than there are ranks. By $MPIRUN where it is set. Where $FORKED is set, the program is weir, and forks its ranks itself.
+# To be sourced.
 over() {
     local ranks=$1 switches=()
     shift

@@ -35,7 +35,7 @@ nlohmann::json limits_json(const StressStudy& study, const std::vector<Limit>& l
 /// Each axis' ends, what its run is hard by, the step and time at which it breaks.
 Numbers numbers_of(const std::vector<Limit>& limits);
 /// Whether the limits are where they were published, by a run at either end of each; where they were found with other rounding, or none
-/// are published, whether their guaranteed ranges pass. The exit code of the command.
+/// are published, whether their guaranteed ranges pass; so too, at ci size, of slow axes. The exit code of the command.
 int compare_limits(const std::vector<StressStudy>& studies, Size size, const std::filesystem::path& published, const Solvers& solvers);
 std::string limits_markdown(const nlohmann::json& study);
 /// Open targets beyond the guaranteed ranges of all studies; empty where there are none.

@@ -16,10 +16,6 @@ using nlohmann::json;
 
 std::string place_of(const Stress& s) { return (s.method.empty() ? s.name : s.name + ", " + s.method) + ": "; }
 
-std::string comparison_of_slow(const Stress& s) {
-    return place_of(s) + fmt::format("slow; at ci size only the guaranteed range is run, up to {:g}\n", s.guaranteed.value_or(0));
-}
-
 /// Takes out the published numbers of an axis that is not compared.
 void drop_numbers(json& pins, const std::string& place) {
     if (!pins.is_object() || !pins.contains("numbers")) return;
@@ -62,25 +58,24 @@ int compare_limits(const std::vector<StressStudy>& studies, Size size, const std
         json pins = json_of(pins_file(published, study.name));
         const json study_as_published = json_of(published / (study.name + ".json"));
         const bool comparable = pins.is_object() && study_as_published.is_object() && rounds_otherwise(pins).empty();
-        std::vector<Limit> limits;
+        std::vector<Limit> shown, compared;
         std::vector<std::string> unpublished;
         for (const Stress& s : study.stresses) {
-            if (s.slow && size == Size::ci) {
-                fmt::print("{}", comparison_of_slow(s));
-                sound = check_guaranteed(s, solvers).passes() && sound;
-                drop_numbers(pins, place_of(s));
-                continue;
-            }
-            const auto there = comparable ? at_published_ends(s, study_as_published, solvers) : std::nullopt;
-            if (comparable && !there) unpublished.push_back(place_of(s) + "its limit is not published");
+            const bool range_only = s.slow && size == Size::ci;
+            if (range_only) drop_numbers(pins, place_of(s));
+            const auto there = comparable && !range_only ? at_published_ends(s, study_as_published, solvers) : std::nullopt;
+            if (comparable && !range_only && !there) unpublished.push_back(place_of(s) + "its limit is not published");
             if (there)
-                limits.push_back(*there), sound = sound && there->guarded();
+                shown.push_back(*there), sound = sound && there->guarded();
             else if (s.guaranteed)
-                limits.push_back(check_guaranteed(s, solvers)), sound = sound && limits.back().passes();
+                shown.push_back(check_guaranteed(s, solvers)), sound = sound && shown.back().passes();
+            else
+                continue;
+            if (!range_only) compared.push_back(shown.back());
         }
-        fmt::print("{}\n", limits_table(study, limits));
+        fmt::print("{}\n", limits_table(study, shown));
         std::fflush(stdout);
-        Comparison c = compare_numbers(numbers_of(limits), pins);
+        Comparison c = compare_numbers(numbers_of(compared), pins);
         c.moved.insert(c.moved.begin(), unpublished.begin(), unpublished.end());
         const std::string command = fmt::format("weir stability {} --size full --publish", study.name);
         std::fputs(comparison_text(study.name + ", limits", command, c).c_str(), stderr);

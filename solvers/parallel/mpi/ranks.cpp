@@ -62,12 +62,12 @@ int run_on_forked_ranks(int ranks, const std::function<int()>& run) {
         if (self.rank() > 0) print_nothing();
         return std::to_string(run());
     };
-    int exit_code = exit_success;
+    int result = exit_success;
     for (const ForkedEnd& end : fork_ranks(ranks, body, std::getenv("WEIR_HALO_POISON") != nullptr)) {
         const int code = end.status == 0 ? std::atoi(end.said.c_str()) : end.status;
-        if (exit_code == exit_success || exit_code == exit_internal_error) exit_code = code == exit_success ? exit_code : code;
+        if (code != exit_success && (result == exit_success || result == exit_internal_error)) result = code;
     }
-    return exit_code;
+    return result;
 }
 
 void join() {

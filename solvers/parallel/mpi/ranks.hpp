@@ -17,7 +17,8 @@ int threads_of_rank();
 /// Number of ranks that this program forks itself, without MPI, for tests: WEIR_FORKED_RANKS; 1 without it.
 int forked_ranks();
 /// run() as each of these ranks, in a process of its own with one thread unless it asks for more; output of ranks other than 0 is hidden.
-/// Returns the first exit code that is no success, and of these one by which weir ends before one of a rank that waited in vain.
+/// Returns exit_success if all ranks do; else the exit code of a rank that failed by itself: those that wait for it end with
+/// exit_internal_error.
 int run_on_forked_ranks(int ranks, const std::function<int()>& run);
 
 /// Makes communicator() the communicator of all ranks and hides the output of ranks other than 0. Throws BadInput where this weir was built

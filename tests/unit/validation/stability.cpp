@@ -201,7 +201,9 @@ TEST("of a slow axis a comparison at ci size runs the guaranteed range alone, an
     options.size = Size::ci;
     EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_success) << "the limit is not looked at";
     options.names = {slow(2)};  // it breaks before
+    testing::internal::CaptureStdout();
     EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_claim_failed);
+    EXPECT_NE(testing::internal::GetCapturedStdout().find("FAIL  end"), std::string::npos);
     options.names = {slow(0.05)}, options.size = Size::full;
     EXPECT_EQ(stability_command(options, test::fake_kinds()), exit_claim_failed);
 }
