@@ -147,6 +147,10 @@ int main(int argc, char** argv) {
         weir::app::release_interrupts();
         return weir::distributed::leave(exit_code, complaint);
     };
-    const int forked = weir::distributed::forked_ranks();
-    return forked > 1 && is_run(argc, argv) ? weir::distributed::run_on_forked_ranks(forked, one) : one();
+    try {
+        const int forked = is_run(argc, argv) ? weir::distributed::forked_ranks() : 1;
+        return forked > 1 ? weir::distributed::run_on_forked_ranks(forked, one) : one();
+    } catch (const weir::BadInput& error) {
+        return complain(error.what(), weir::exit_bad_input);
+    }
 }

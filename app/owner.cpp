@@ -15,6 +15,8 @@ namespace weir::app {
 
 namespace {
 
+constexpr const char* unfinished_ending = ".part";  // of checkpoints and of output/atomic_file.cpp
+
 /// The id in run.json; empty where there is none, as in folders of weir before it had ids.
 std::string run_in(const std::filesystem::path& folder) {
     nlohmann::json j;
@@ -33,6 +35,16 @@ void move_away(const std::filesystem::path& checkpoint, bool quiet) {
     if (failed) throw OutputError("cannot rename " + checkpoint.string() + ": " + failed.message());
     if (!quiet)
         std::fprintf(stderr, "%s belongs to an earlier run: renamed to %s\n", checkpoint.c_str(), earlier(checkpoint).filename().c_str());
+}
+
+/// Files that a killed run was writing when it ended. The folder is locked, so no run is writing them now.
+void remove_unfinished(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    const auto remove = [&](const std::filesystem::path& file) { std::filesystem::remove(file, ignored); };
+    for (const auto& file : {sim::checkpoint_file(folder), sim::last_good_file(folder), folder / "run.json"})
+        remove(file.string() + unfinished_ending);
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "frames", ignored))
+        if (entry.path().extension() == unfinished_ending && !entry.is_directory(ignored)) remove(entry.path());
 }
 
 }  // namespace
@@ -58,6 +70,7 @@ bool holds_run(const std::filesystem::path& folder, const std::string& run) { re
 std::string own_as_new(const std::filesystem::path& folder, const scene::Scene& scene, bool quiet) {
     by_first_rank([&] {
         for (const auto& checkpoint : {sim::checkpoint_file(folder), sim::last_good_file(folder)}) move_away(checkpoint, quiet);
+        remove_unfinished(folder);
     });
     return sim::run_id(scene);
 }
@@ -72,6 +85,7 @@ std::string own_as_continued(const std::filesystem::path& folder, const scene::S
         if (!there.empty() && there != continued && there != branch)
             throw BadInput(folder.string() + ": the files in this folder belong to run " + there + ", but the checkpoint belongs to run " +
                            continued + ": continue in the folder of its own run, or in a new one (--out)");
+        remove_unfinished(folder);
     });
     return communicator().largest(holds_continued ? 1 : 0) != 0 ? continued : branch;
 }

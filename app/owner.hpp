@@ -14,9 +14,9 @@ namespace weir::app {
 /// writes. Throws BadInput where another run writes there, OutputError where the folder cannot be written.
 std::unique_ptr<output::FolderLock> lock_folder(const std::filesystem::path& folder);
 
-/// Before a new run writes to a folder: checkpoints of an earlier run there get other names, so that none of them continues this one. The
-/// run owns the folder. Safe against an end at any moment: until run.json is replaced, the files are those of the earlier run.
-/// Returns the id of the run, the same on all ranks.
+/// Before a new run writes to a folder: checkpoints of an earlier run there get other names, so that none of them continues this one, and
+/// files that a killed run left unfinished are removed. The run owns the folder. Safe against an end at any moment: until run.json is
+/// replaced, the files are those of the earlier run. Returns the id of the run, the same on all ranks.
 std::string own_as_new(const std::filesystem::path& folder, const scene::Scene& scene, bool quiet);
 
 /// The same of a run that goes on from a checkpoint of run `continued` after so many steps. In a folder without a run it is a run of its

@@ -233,6 +233,20 @@ TEST("OMP_NUM_THREADS of more threads than a thousand is refused with what is al
     EXPECT_FALSE(fs::exists("out"));
 }
 
+TEST("WEIR_FORKED_RANKS that is no number of ranks is refused with what is allowed") {
+    TemporaryFolder folder;
+    const Inside here(folder.path());
+    write("a.toml", tiny_scene);
+    for (const std::string given : {"x", "", "0", "-2", "3x", "17", "99999999999"}) {
+        setenv("WEIR_FORKED_RANKS", given.c_str(), 1);
+        const Answer answer = weir_says({"run", "a.toml", "--out", "out"});
+        unsetenv("WEIR_FORKED_RANKS");
+        EXPECT_EQ(answer.code, 2) << given;
+        EXPECT_EQ(answer.text, "WEIR_FORKED_RANKS=" + given + ": expected a number of ranks from 1 to 16\n");
+    }
+    EXPECT_FALSE(fs::exists("out"));
+}
+
 TEST("where memory is scarce a run ends; where OpenBLAS waits for memory at its end, a signal ends it") {
     TemporaryFolder folder;
     const Inside here(folder.path());

@@ -204,7 +204,9 @@ TEST("a run killed at any moment (kill -9) leaves a readable series; its last ch
         first.signal(SIGKILL);
         ASSERT_EQ(first.wait(), 128 + SIGKILL);
         EXPECT_GE(weir::test::read_whole_series(out / "grid.pvd"), 3);
+        for (const auto& left : {"checkpoint.weir.part", "frames/grid_000009.vti.part"}) std::ofstream(out / left) << "unfinished";
         run({"run", "--restart", out, "--threads", "1"}, folder.path() / "log2");
+        for (const auto& left : {"checkpoint.weir.part", "frames/grid_000009.vti.part"}) EXPECT_FALSE(fs::exists(out / left)) << left;
         remove_parts(out);
         EXPECT_EQ(weir::test::first_difference(whole_run(name), out), "") << name;
     }

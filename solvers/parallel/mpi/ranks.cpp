@@ -7,9 +7,11 @@
 #include "parallel/mpi/mpi_entry.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <thread>
 
 #include <fcntl.h>
@@ -22,6 +24,8 @@ namespace {
 
 /// When all ranks fail at the same place, they arrive within this time.
 constexpr double patience = 10;  // [s]
+
+constexpr int most_forked_ranks = 16;  // each pair has two sockets, which one process makes
 
 int own_stderr = -1;  // of a rank whose output is hidden
 
@@ -55,7 +59,17 @@ int threads_of_rank() {
     return std::max(1, processors / here);
 }
 
-int forked_ranks() { return number_of({"WEIR_FORKED_RANKS"}, 1); }
+int forked_ranks() {
+    const char* const text = std::getenv("WEIR_FORKED_RANKS");
+    if (!text) return 1;
+    int ranks = 0;
+    const char* const end = text + std::strlen(text);
+    const auto [rest, failed] = std::from_chars(text, end, ranks);
+    if (failed != std::errc{} || rest != end || ranks < 1 || ranks > most_forked_ranks)
+        throw BadInput("WEIR_FORKED_RANKS=" + std::string(text) + ": expected a number of ranks from 1 to " +
+                       std::to_string(most_forked_ranks));
+    return ranks;
+}
 
 int run_on_forked_ranks(int ranks, const std::function<int()>& run) {
     const auto body = [&](ForkedRanks& self) {

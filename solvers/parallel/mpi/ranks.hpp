@@ -15,6 +15,7 @@ int started_rank();
 int threads_of_rank();
 
 /// Number of ranks that this program forks itself, without MPI, for tests: WEIR_FORKED_RANKS; 1 without it.
+/// Throws BadInput for anything but a number from 1 to 16.
 int forked_ranks();
 /// run() as each of these ranks, in a process of its own with one thread unless it asks for more; output of ranks other than 0 is hidden.
 /// Returns exit_success if all ranks do; else the exit code of a rank that failed by itself: those that wait for it end with
