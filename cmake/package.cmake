@@ -38,6 +38,7 @@ set(CPACK_DEBIAN_VIEW_PACKAGE_DEPENDS "${same}")
 # Static: programs that link it need what it is made of.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libweir-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS OFF)  # has no dynamic program; CPack would ask `file` about every header
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "fluid simulation: the library of C++\n${about}\n\nThis package has the static library, its headers, and what find_package(weir)\nreads.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
   "libfmt-dev, libtomlplusplus-dev, libmuparser-dev, libgsl-dev, libfftw3-dev, libsuitesparse-dev, libopenblas-dev, libvtk9-dev, ocl-icd-opencl-dev")
