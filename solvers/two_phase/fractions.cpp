@@ -165,18 +165,33 @@ namespace {
 
 constexpr int sub_cells_2d = 16, sub_cells_3d = 8;  // along each axis: a circle of ten cells' radius then has its area to 1e-5
 
+/// Returns whether the corners of a box around x with sides h are all in a shape, or on its surface.
+template <int D>
+bool is_box_inside(const geometry::Shape<D>& shape, const Vec<D>& x, const Vec<D>& h) {
+    const real round_off = 1e-9 * norm(h);
+    for (int code = 0; code < (1 << D); ++code) {
+        Vec<D> corner = x;
+        for (int a = 0; a < D; ++a) corner[a] += ((code >> a & 1) ? 0.5 : -0.5) * h[a];
+        if (shape.distance(corner) > round_off) return false;
+    }
+    return true;
+}
+
 /// The fraction of a box around x with sides h below the plane that approximates the shape's surface.
 template <int D>
 real fraction_near(const geometry::Shape<D>& shape, const Vec<D>& x, const Vec<D>& h) {
     const real d = shape.distance(x);
     Vec<D> m;
-    real steep = 0;
+    real steep = 0, square = 0;
     for (int a = 0; a < D; ++a) {
         const Vec<D> by = 0.25 * h[a] * Vec<D>::unit(a);
         m[a] = 2 * (shape.distance(x + by) - shape.distance(x - by));
-        steep += std::abs(m[a]);
+        steep += std::abs(m[a]), square += m[a] * m[a] / (h[a] * h[a]);
     }
     if (steep == 0) return d < 0 ? 1 : 0;
+    // Beside an edge or a corner differences mix both faces, so that their gradient is shorter: one plane would cut the box in the corner
+    // of a tank, which is full.
+    if (d < 0 && square < 0.9 && is_box_inside(shape, x, h)) return 1;
     real middle = 0;
     for (int a = 0; a < D; ++a) middle += 0.5 * m[a];
     return volume_below(m, middle - d);

@@ -1,7 +1,9 @@
 #include "two_phase/level_set.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace weir::two_phase {
 
@@ -9,18 +11,36 @@ namespace {
 
 constexpr int reach = 2;  // cells
 
-/// Distance from x to the part of a plane within its cell; x is relative to the cell's lower corner, in cells. The foot on the plane is
-/// moved to the closest point of the cell.
+/// Distance from x to the part of a plane within its cell; x is relative to the cell's lower corner, in cells. The closest point y of the
+/// plane in the cell minimizes Σ h_d² (x_d − y_d)² with m·y = α and 0 ≤ y_d ≤ 1: y_d = clamp(x_d − λ m_d/h_d², 0, 1), and m·y falls with
+/// the multiplier λ, linearly between the values at which a component meets an end.
 template <int D>
 real distance_to_cut(const Plane<D>& plane, const Vec<D>& h, const Vec<D>& x) {
-    Vec<D> n;  // of the plane m·x = alpha in physical space
-    for (int d = 0; d < D; ++d) n[d] = plane.m[d] / h[d];
-    const real excess = (dot(plane.m, x) - plane.alpha) / dot(n, n);
-    Vec<D> apart;
-    for (int d = 0; d < D; ++d) {
-        const real foot = std::clamp(x[d] - excess * n[d] / h[d], 0.0, 1.0);
-        apart[d] = h[d] * (x[d] - foot);
+    const auto point = [&](real lambda) {
+        Vec<D> y;
+        for (int d = 0; d < D; ++d) y[d] = std::clamp(x[d] - lambda * plane.m[d] / (h[d] * h[d]), 0.0, 1.0);
+        return y;
+    };
+    std::array<real, 2 * D> ends{};  // ascending: multipliers at which a component begins or ceases to change
+    std::size_t count = 0;
+    for (int d = 0; d < D; ++d)
+        for (const real end : {0.0, 1.0}) {
+            if (plane.m[d] == 0) continue;
+            std::size_t i = count++;
+            const real lambda = (x[d] - end) * h[d] * h[d] / plane.m[d];
+            for (; i > 0 && ends[i - 1] > lambda; --i) ends[i] = ends[i - 1];
+            ends[i] = lambda;
+        }
+    real low = ends[0], above = dot(plane.m, point(low)) - plane.alpha;
+    Vec<D> y = point(low);
+    for (std::size_t i = 1; i < count && above > 0; ++i) {
+        const real high = ends[i], below = dot(plane.m, point(high)) - plane.alpha;
+        const real part = below < 0 ? above / (above - below) : 1;
+        y = point(low + part * (high - low));
+        low = high, above = below;
     }
+    Vec<D> apart;
+    for (int d = 0; d < D; ++d) apart[d] = h[d] * (x[d] - y[d]);
     return norm(apart);
 }
 
@@ -39,28 +59,66 @@ real distance_to_faces(const Interface<D>& s, const Index<D>& I) {
     return least;
 }
 
+/// A mixed cell and its plane.
+template <int D>
+struct Cut {
+    Index<D> cell;
+    Plane<D> plane;
+};
+
+/// The mixed cells by their index along the slowest axis, from -reach; ghost cells of that width included.
+template <int D>
+std::vector<std::vector<Cut<D>>> find_cuts(const Interface<D>& s, const Index<D>& extent) {
+    const Strides<D> stride = strides_of(s.padded);
+    std::vector<std::vector<Cut<D>>> cuts(static_cast<std::size_t>(extent[D - 1] + 2 * reach));
+    for_each_in(Index<D>::constant(-reach), replicated(extent + Index<D>::constant(reach)), [&](const Index<D>& I) {
+        if (is_mixed(s.padded(I))) cuts[static_cast<std::size_t>(I[D - 1] + reach)].push_back({I, plane_at<D>(s.padded.at(I), stride)});
+    });
+    return cuts;
+}
+
+/// f(I) for the cells of the plane `outer` within `reach` of a cell along the other axes.
+template <int D, class F>
+void for_each_near(const Index<D>& cell, int outer, const Index<D>& extent, F&& f) {
+    Index<D> lo, hi;
+    for (int d = 0; d + 1 < D; ++d) lo[d] = std::max(0, cell[d] - reach), hi[d] = std::min(extent[d], cell[d] + reach + 1);
+    Index<D> I = lo;
+    I[D - 1] = outer;
+    if constexpr (D == 2) {
+        for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
+    } else {
+        for (I[1] = lo[1]; I[1] < hi[1]; ++I[1])
+            for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
+    }
+}
+
+/// Returns whether the middle of a cell is in the liquid.
+template <int D>
+bool is_inside(const Interface<D>& s, const Index<D>& I) {
+    const real f = s.padded(I);
+    if (!is_mixed(f)) return f > 0.5;
+    const Plane<D> own = plane_at<D>(s.padded.at(I), strides_of(s.padded));
+    return dot(own.m, Vec<D>::constant(0.5)) < own.alpha;
+}
+
 }  // namespace
 
 template <int D>
 void find_distance(const Interface<D>& s, Grid<real, D>& phi) {
-    const Strides<D> stride = strides_of(s.padded);
+    const Index<D> extent = phi.extent();
     const real farthest = reach * *std::min_element(s.h.begin(), s.h.end());
     const Vec<D> middle = Vec<D>::constant(0.5);
+    for_each_cell(phi.extent(), [&](const Index<D>& I) { phi(I) = std::min(farthest, distance_to_faces(s, I)); });
+    const auto cuts = find_cuts(s, extent);
+    for_each_plane(phi.extent(), [&](int outer) {  // each plane takes the cuts of its neighbours: no two threads write to one cell
+        for (int near = outer; near <= outer + 2 * reach; ++near)
+            for (const Cut<D>& cut : cuts[static_cast<std::size_t>(near)])
+                for_each_near(cut.cell, outer, extent, [&](const Index<D>& I) {
+                    phi(I) = std::min(phi(I), distance_to_cut(cut.plane, s.h, middle - to_vec(cut.cell - I)));
+                });
+    });
     for_each_cell(phi.extent(), [&](const Index<D>& I) {
-        real least = std::min(farthest, distance_to_faces(s, I));
-        for (int code = 0; code < (D == 2 ? 25 : 125); ++code) {
-            Index<D> by;
-            for (int d = 0, rest = code; d < D; ++d, rest /= 5) by[d] = rest % 5 - reach;
-            if (!is_mixed(s.padded(I + by))) continue;
-            least = std::min(least, distance_to_cut(plane_at<D>(s.padded.at(I + by), stride), s.h, middle - to_vec(by)));
-        }
-        const real f = s.padded(I);
-        bool inside = f > 0.5;
-        if (is_mixed(f)) {
-            const Plane<D> own = plane_at<D>(s.padded.at(I), stride);
-            inside = dot(own.m, middle) < own.alpha;
-        }
-        phi(I) = inside ? -least : least;
+        if (is_inside(s, I)) phi(I) = -phi(I);
     });
 }
 
