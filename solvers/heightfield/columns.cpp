@@ -292,7 +292,7 @@ void Columns::restore(const Checkpoint& from) {
     state_.time = from.get_value<real>("time");
     state_.net_inflow = from.get_value<real>("poured");
     through_ = from.get_value<real>("through");
-    steps_ = from.get_value<std::int64_t>("steps");
+    steps_ = get_count(from, "steps");
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     if (!floats_.empty()) floats_.restore(from, state_.time, surface_, rate_, k_);
     ghosts_filled_ = !own().distributed_storage();

@@ -1,9 +1,12 @@
-// A grid in a checkpoint: whole, or, with distributed storage, written by each rank for its own planes.
+// A grid in a checkpoint: whole, or, with distributed storage, written by each rank for its own planes. What is read is checked, because a
+// file may have the right checksum and wrong content.
 #pragma once
 #include "core/checkpoint.hpp"
 #include "parallel/grid.hpp"
 
+#include <cstdint>
 #include <string>
+#include <type_traits>
 
 namespace weir {
 
@@ -26,11 +29,26 @@ void put_planes(Checkpoint& to, const std::string& name, const Grid<T, D>& q) {
     to.put_part(name, q.values().subspan(begin, count), begin, q.size());
 }
 
+/// Throws std::runtime_error naming the block if its size is wrong or a number in it is not finite.
 template <class T, int D>
 void get_planes(const Checkpoint& from, const std::string& name, Grid<T, D>& q) {
-    if (!q.store().windowed()) return from.get(name, q.values());
-    const auto [begin, count] = detail::own_entries(q);
-    from.get_part(name, q.values().subspan(begin, count), begin, q.size());
+    std::span<T> values = q.values();
+    if (q.store().windowed()) {
+        const auto [begin, count] = detail::own_entries(q);
+        values = values.subspan(begin, count);
+        from.get_part(name, values, begin, q.size());
+    } else {
+        from.get(name, values);
+    }
+    if constexpr (std::is_same_v<T, real>) Checkpoint::require_finite(name, values);
+}
+
+/// A number of steps, frames or changes; all fit in a double. Throws std::runtime_error naming the block if it is negative or so large that
+/// counting on overflows.
+inline std::int64_t get_count(const Checkpoint& from, const std::string& name) {
+    const auto count = from.get_value<std::int64_t>(name);
+    Checkpoint::require_within(name, count, 0, std::int64_t{1} << 53);
+    return count;
 }
 
 }  // namespace weir

@@ -1,6 +1,7 @@
 // Checkpoints of a run: the scene, its changes, the solver and the probes; a run that continues from one equals the uninterrupted run.
 #include "core/error.hpp"
 #include "parallel/communicator.hpp"
+#include "parallel/plane_checkpoint.hpp"
 #include "scene/names.hpp"
 #include "sim/finite.hpp"
 #include "sim/make_solver.hpp"
@@ -59,13 +60,6 @@ void require_same_files(const scene::Scene& scene, const std::string& files, con
 }
 
 void put_text(Checkpoint& to, const std::string& name, const std::string& text) { to.put(name, std::span<const char>(text)); }
-
-/// A count of steps, frames or changes; all fit in a double.
-std::int64_t get_count(const Checkpoint& from, const std::string& name) {
-    const auto count = from.get_value<std::int64_t>(name);
-    Checkpoint::require_within(name, count, 0, std::int64_t{1} << 53);
-    return count;
-}
 
 /// Checks that a state from a file is valid: every number is finite, and the time is not negative.
 void require_sound(const Simulation& simulation) {

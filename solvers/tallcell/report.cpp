@@ -2,6 +2,7 @@
 #include "free_surface/measure.hpp"
 #include "geometry/brush.hpp"
 #include "mac/grid/diagnostics.hpp"
+#include "parallel/plane_checkpoint.hpp"
 #include "tallcell/solver.hpp"
 
 namespace weir::tallcell {
@@ -48,7 +49,7 @@ void TallCells<D>::save(Checkpoint& to) const {
 template <int D>
 void TallCells<D>::restore(const Checkpoint& from) {
     state_.time = from.get_value<real>("time");
-    steps_ = from.get_value<std::int64_t>("tallcell.steps");
+    steps_ = get_count(from, "tallcell.steps");
     place_solids(state_.time);
     state_.restore(from);  // liquid flags after the solids' flags
     surface_.restore(from);
@@ -58,6 +59,7 @@ void TallCells<D>::restore(const Checkpoint& from) {
     else
         volume_.start(surface_, state_);  // files of older versions have no such block
     const auto reals = from.get_value<std::array<real, 3>>("tallcell.reals");
+    Checkpoint::require_finite("tallcell.reals", reals);
     volume_target_ = reals[0], volume_shift_ = reals[1], rate_ = reals[2];
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     remesh();

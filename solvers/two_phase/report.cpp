@@ -1,6 +1,7 @@
 // Output of both phases: fields, integrals, checkpoints.
 #include "free_surface/level_set.hpp"
 #include "mac/grid/diagnostics.hpp"
+#include "parallel/plane_checkpoint.hpp"
 #include "two_phase/level_set.hpp"
 #include "two_phase/solver.hpp"
 
@@ -134,10 +135,9 @@ void TwoPhase<D>::save(Checkpoint& to) const {
 template <int D>
 void TwoPhase<D>::restore(const Checkpoint& from) {
     state_.restore(from);
-    steps_ = from.get_value<std::int64_t>("two_phase.steps");
+    steps_ = get_count(from, "two_phase.steps");
     ruled_ = from.get_value<std::array<std::int64_t, bounds>>("two_phase.ruled");
     if (has_open_sides()) poured_ = from.get_value<real>("two_phase.poured");
-    Checkpoint::require_within("two_phase.steps", steps_, 0, std::numeric_limits<std::int64_t>::max());
     find_face_densities();
     find_rate();
     distance_is_stale_ = true;

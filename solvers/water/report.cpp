@@ -118,6 +118,8 @@ void Water<D>::restore(const Checkpoint& from) {
     restore_markers(from);
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
     const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
+    Checkpoint::require_finite("water.reals", reals);
+    for (const std::int64_t count : counts) Checkpoint::require_within("water.counts", count, 0, std::int64_t{1} << 53);
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = communicator().rank() == 0 ? counts[1] : 0, reseeded_ = communicator().rank() == 0 ? counts[2] : 0;
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);

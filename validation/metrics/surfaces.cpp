@@ -188,7 +188,9 @@ std::vector<Metric> surface_metrics() {
          .quantity = Quantity::value,
          .measure =
              [](const RunRecord& run, const Reference&) {
-                 const real step = options_of(*run.scene)->cell * spacing_of(run);
+                 const auto options = options_of(*run.scene);
+                 if (!options) throw BadInput("surface.smallest_triangle needs a scene with a reconstructed surface");
+                 const real step = options->cell * spacing_of(run);
                  return smallest_triangle(mesh_of(run)) / (step * step);
              }},
         {.name = "surface.shift",

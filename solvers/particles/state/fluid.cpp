@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "parallel/communicator.hpp"
+#include "parallel/plane_checkpoint.hpp"
 #include "particles/boundaries/beside_bodies.hpp"
 #include "particles/ranks/particle_exchange.hpp"
 
@@ -322,8 +323,7 @@ void Fluid<D>::restore(const Checkpoint& from) {
     Checkpoint::require_finite("particles.clock", clock);
     time = clock[0];
     next_id = clock[1];
-    steps = from.get_value<std::int64_t>("particles.steps");
-    Checkpoint::require_within("particles.steps", steps, 0, std::int64_t{1} << 53);
+    steps = get_count(from, "particles.steps");
     require_whole(*this);
     if (from.has("particles.clamps")) corrections = from.get_value<BoundaryCorrections>("particles.clamps");
     if (!domain.solids.empty()) domain.solids.set_time(time);

@@ -7,6 +7,7 @@
 #include "support/temporary_folder.hpp"
 #include "support/test.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -160,6 +161,27 @@ TEST("changes of the scene without an end, or without a key, are refused") {
     }
 }
 
+TEST("numbers that are not finite, and counts that overflow within a few steps, are refused") {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "checkpoint.weir";
+    const auto refused = [&](const std::string& scene, const std::string& block, const auto value, const std::string& cells = "") {
+        Blocks blocks = start(scene, file, cells);
+        const auto is_it = [&](const auto& b) { return b.first == block; };
+        const auto it = std::find_if(blocks.begin(), blocks.end(), is_it);
+        ASSERT_NE(it, blocks.end()) << scene << " has no block " << block;
+        it->second = filled(it->second.size(), value);
+        write(file, blocks);
+        EXPECT_EQ(outcome(file), 0) << scene << ": " << block;
+    };
+    const real nan = std::numeric_limits<real>::quiet_NaN();
+    const std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    refused("water", "leapfrog.rate.0", nan), refused("water", "water.reals", nan), refused("water", "water.counts", most);
+    refused("ranks_tall", "leapfrog.rate.1", nan), refused("ranks_tall", "tallcell.reals", nan),
+        refused("ranks_tall", "tallcell.steps", most);
+    refused("ranks_shallow", "discharge_x", nan, "[12, 1, 14]"), refused("ranks_columns", "steps", most);
+    refused("two_phase", "two_phase.steps", most), refused("dam", "particles.steps", most), refused("smoke", "u_x", nan);
+}
+
 TEST("any block of smoke may be crafted") { expect_harmless("smoke"); }
 TEST("any block of water with markers may be crafted") { expect_harmless("water"); }
 TEST("any block of floats on water may be crafted") { expect_harmless("raft"); }
@@ -167,6 +189,7 @@ TEST("any block of particles may be crafted") { expect_harmless("dam"); }
 TEST("any block of tall cells may be crafted") { expect_harmless("ranks_tall"); }
 TEST("any block of shallow water may be crafted") { expect_harmless("ranks_shallow", "[12, 1, 14]"); }
 TEST("any block of columns may be crafted") { expect_harmless("ranks_columns"); }
+TEST("any block of liquid and gas may be crafted") { expect_harmless("two_phase"); }
 TEST("any block of waves may be crafted") { expect_harmless("ranks_waves", "[15, 1, 22]"); }
 
 }  // namespace crafted_checkpoints_tests
