@@ -14,6 +14,12 @@ namespace weir::free_surface {
 
 using namespace mac;  // the grid's words are the solver's own
 
+/// An integer value as an index. What is no number or leaves the range of indices, as in a step that diverges, is an index far outside.
+inline int index_from(real value) {
+    constexpr real far = 1 << 30;
+    return static_cast<int>(std::min(far, std::max(-far, value)));
+}
+
 /// The samples lo and lo + step of a row, and the weight of the second one.
 struct Interval {
     int lo;
@@ -23,8 +29,8 @@ struct Interval {
 
 /// Linear interpolation at s [samples] in a row of n: clamped at its ends, or with period `period` (0: not periodic).
 inline Interval locate(real s, int n, int period) {
-    int i = static_cast<int>(std::floor(s));
-    const real f = s - i;
+    const real lower = std::floor(s), f = s - lower;
+    int i = index_from(lower);
     if (static_cast<unsigned>(i) < static_cast<unsigned>(n - 1)) return {i, 1, f};
     if (period > 0) {
         i = ((i % period) + period) % period;
@@ -75,7 +81,7 @@ struct Frame {
     /// The cell that contains x; points outside belong to the nearest cell.
     Index<D> cell_of(const Vec<D>& x) const {
         Index<D> I;
-        for (int d = 0; d < D; ++d) I[d] = std::clamp(static_cast<int>(std::floor((x[d] - origin[d]) * inv_h[d])), 0, cells[d] - 1);
+        for (int d = 0; d < D; ++d) I[d] = std::clamp(index_from(std::floor((x[d] - origin[d]) * inv_h[d])), 0, cells[d] - 1);
         return I;
     }
     /// The cell with this linear index.

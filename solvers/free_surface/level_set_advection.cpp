@@ -129,7 +129,7 @@ real LevelSet<D>::cubic(const Vec<D>& x) const {
         const real s = (x[d] - frame_.origin[d]) * frame_.inv_h[d] - 0.5, floor = std::floor(s), f = s - floor;
         for (int k = 0; k < 4; ++k) {
             Index<D> I{};
-            I[d] = static_cast<int>(floor);
+            I[d] = index_from(floor);
             at[axis][static_cast<std::size_t>(k)] = phi.stride(d) * frame_.near(I, d, k - 1)[d];
         }
         w[axis] = catmull_rom(f);

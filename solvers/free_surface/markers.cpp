@@ -203,7 +203,7 @@ std::int64_t Markers<D>::find_going(const Frame<D>& frame, std::size_t first, st
     gone_.clear();
     std::int64_t left = 0;
     for (std::size_t p = first; p < last; ++p) {
-        const int plane = std::clamp(static_cast<int>(std::floor((x[D - 1][p] - origin) * inv_h)), 0, planes - 1);
+        const int plane = std::clamp(index_from(std::floor((x[D - 1][p] - origin) * inv_h)), 0, planes - 1);
         const auto& ranks = holders_[static_cast<std::size_t>(plane)];
         if (leave && is_beyond(position(p))) {
             ++left;

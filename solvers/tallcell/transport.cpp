@@ -53,6 +53,7 @@ struct Inside {
         for (int d = 0; d < D; ++d) {
             const auto at = static_cast<std::size_t>(d);
             all = all && s[d] >= 1 && s[d] < frame.cells[d] - 1;
+            if (!all) return;  // also where s is no number
             face[at] = static_cast<int>(s[d]);
             face_part[at] = s[d] - face[at];
             centre[at] = static_cast<int>(s[d] - 0.5);

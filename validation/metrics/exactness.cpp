@@ -47,7 +47,7 @@ real asymmetry(const FieldSet& fields, int axis) {
     const GridView& g = fields.grid;
     real worst = 0;
     for (int c = 0; c < u.components(); ++c) {
-        const std::array<int, 3> n = sample_counts(g, c);
+        const std::array<int, 3> n = sample_counts(g, u.where == Where::face ? c : -1);
         for (int k = 0; k < n[2]; ++k)
             for (int j = 0; j < n[1]; ++j)
                 for (int i = 0; i < n[0]; ++i) {
