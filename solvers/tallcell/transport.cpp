@@ -152,7 +152,7 @@ real Transport<D>::corrected(int a, const Vec<D>& s, real here, real dt) const {
         });
         value = sample(before_[a], a, around);
     }
-    return std::clamp(value + 0.5 * (here - back), low, high);
+    return std::min(std::max(value + 0.5 * (here - back), low), high);  // no clamp: its ends must be numbers
 }
 
 /// Changes of all runs of tall cells at their Gauss points. Eight columns adjacent along x are processed together.
