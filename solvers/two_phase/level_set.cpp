@@ -11,6 +11,13 @@ namespace {
 
 constexpr int reach = 2;  // cells
 
+/// Fractions of full and empty cells depart from 1 and 0 by what the pressure's tolerance leaves of the divergence. A cut of this volume is
+/// too small to be drawn: it is 1.4e-3 cells wide (2D).
+constexpr real invisible = 1e-6;
+bool is_bare(real fraction) { return fraction <= invisible; }
+bool is_filled(real fraction) { return fraction >= 1 - invisible; }
+bool is_cut(real fraction) { return !is_bare(fraction) && !is_filled(fraction); }
+
 /// Distance from x to the part of a plane within its cell; x is relative to the cell's lower corner, in cells. The closest point y of the
 /// plane in the cell minimizes Σ h_d² (x_d − y_d)² with m·y = α and 0 ≤ y_d ≤ 1: y_d = clamp(x_d − λ m_d/h_d², 0, 1), and m·y falls with
 /// the multiplier λ, linearly between the values at which a component meets an end.
@@ -44,7 +51,7 @@ real distance_to_cut(const Plane<D>& plane, const Vec<D>& h, const Vec<D>& x) {
     return norm(apart);
 }
 
-/// Distance from the middle of cell I to the faces between full and empty cells along the axes.
+/// Distance from the middle of cell I to the faces between filled and bare cells along the axes.
 template <int D>
 real distance_to_faces(const Interface<D>& s, const Index<D>& I) {
     real least = infinity;
@@ -54,25 +61,25 @@ real distance_to_faces(const Interface<D>& s, const Index<D>& I) {
                 Index<D> J = I, K = I;
                 J[d] += side * (k - 1), K[d] += side * k;
                 const real f = s.padded(J), g = s.padded(K);
-                if ((is_full(f) && is_empty(g)) || (is_empty(f) && is_full(g))) least = std::min(least, s.h[d] * (k - 0.5));
+                if ((is_filled(f) && is_bare(g)) || (is_bare(f) && is_filled(g))) least = std::min(least, s.h[d] * (k - 0.5));
             }
     return least;
 }
 
-/// A mixed cell and its plane.
+/// A cut cell and its plane.
 template <int D>
 struct Cut {
     Index<D> cell;
     Plane<D> plane;
 };
 
-/// The mixed cells by their index along the slowest axis, from -reach; ghost cells of that width included.
+/// The cut cells by their index along the slowest axis, from -reach; ghost cells of that width included.
 template <int D>
 std::vector<std::vector<Cut<D>>> find_cuts(const Interface<D>& s, const Index<D>& extent) {
     const Strides<D> stride = strides_of(s.padded);
     std::vector<std::vector<Cut<D>>> cuts(static_cast<std::size_t>(extent[D - 1] + 2 * reach));
     for_each_in(Index<D>::constant(-reach), replicated(extent + Index<D>::constant(reach)), [&](const Index<D>& I) {
-        if (is_mixed(s.padded(I))) cuts[static_cast<std::size_t>(I[D - 1] + reach)].push_back({I, plane_at<D>(s.padded.at(I), stride)});
+        if (is_cut(s.padded(I))) cuts[static_cast<std::size_t>(I[D - 1] + reach)].push_back({I, plane_at<D>(s.padded.at(I), stride)});
     });
     return cuts;
 }
@@ -96,7 +103,7 @@ void for_each_near(const Index<D>& cell, int outer, const Index<D>& extent, F&& 
 template <int D>
 bool is_inside(const Interface<D>& s, const Index<D>& I) {
     const real f = s.padded(I);
-    if (!is_mixed(f)) return f > 0.5;
+    if (!is_cut(f)) return f > 0.5;
     const Plane<D> own = plane_at<D>(s.padded.at(I), strides_of(s.padded));
     return dot(own.m, Vec<D>::constant(0.5)) < own.alpha;
 }

@@ -74,6 +74,15 @@ TEST("a column that begins in the corner of the tank has no gas there") {
     EXPECT_LT(error_of_front<3>("0.0", 1.0 / 16), 0.01);
 }
 
+TEST("the level set is cut off deep in both fluids, where fractions depart from 1 and 0 by round-off") {
+    TwoPhase<2> solver(two_phase_scene(collapse<2>(), {{"scheme.poisson.tolerance", "1e-6"}}));
+    run(solver, 10);
+    const auto phi = distance_of(solver);
+    const real h = 1.0 / 16;
+    for (int j = 0; j < 6; ++j)
+        for (const int i : {0, 1, 2, 12, 13, 14, 15}) EXPECT_EQ(phi({i, j}), i < 3 ? -2 * h : 2 * h) << i << " " << j;
+}
+
 TEST("the level set does not depend on the number of threads") {
     const auto values = [](int threads) {
         set_threads(threads);
