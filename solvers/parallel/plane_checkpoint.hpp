@@ -4,6 +4,7 @@
 #include "core/checkpoint.hpp"
 #include "parallel/grid.hpp"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <type_traits>
@@ -43,12 +44,14 @@ void get_planes(const Checkpoint& from, const std::string& name, Grid<T, D>& q) 
     if constexpr (std::is_same_v<T, real>) Checkpoint::require_finite(name, values);
 }
 
-/// A number of steps, frames or changes; all fit in a double. Throws std::runtime_error naming the block if it is negative or so large that
+/// Numbers of steps, frames or changes; all fit in a double. Throws std::runtime_error naming the block if one is negative or so large that
 /// counting on overflows.
-inline std::int64_t get_count(const Checkpoint& from, const std::string& name) {
-    const auto count = from.get_value<std::int64_t>(name);
-    Checkpoint::require_within(name, count, 0, std::int64_t{1} << 53);
-    return count;
+template <std::size_t N>
+std::array<std::int64_t, N> get_counts(const Checkpoint& from, const std::string& name) {
+    const auto counts = from.get_value<std::array<std::int64_t, N>>(name);
+    for (const std::int64_t count : counts) Checkpoint::require_within(name, count, 0, std::int64_t{1} << 53);
+    return counts;
 }
+inline std::int64_t get_count(const Checkpoint& from, const std::string& name) { return get_counts<1>(from, name)[0]; }
 
 }  // namespace weir

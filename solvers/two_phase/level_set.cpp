@@ -66,6 +66,13 @@ real distance_to_faces(const Interface<D>& s, const Index<D>& I) {
     return least;
 }
 
+template <int D>
+bool is_within(const Index<D>& I, const Index<D>& extent) {
+    for (int d = 0; d < D; ++d)
+        if (I[d] < 0 || I[d] >= extent[d]) return false;
+    return true;
+}
+
 /// A cut cell and its plane.
 template <int D>
 struct Cut {
@@ -87,25 +94,13 @@ std::vector<std::vector<Cut<D>>> find_cuts(const Interface<D>& s, const Index<D>
 /// f(I) for the cells of the plane `outer` within `reach` of a cell along the other axes.
 template <int D, class F>
 void for_each_near(const Index<D>& cell, int outer, const Index<D>& extent, F&& f) {
-    Index<D> lo, hi;
-    for (int d = 0; d + 1 < D; ++d) lo[d] = std::max(0, cell[d] - reach), hi[d] = std::min(extent[d], cell[d] + reach + 1);
-    Index<D> I = lo;
-    I[D - 1] = outer;
-    if constexpr (D == 2) {
-        for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
-    } else {
-        for (I[1] = lo[1]; I[1] < hi[1]; ++I[1])
-            for (I[0] = lo[0]; I[0] < hi[0]; ++I[0]) f(I);
+    constexpr int width = 2 * reach + 1;
+    for (int code = 0; code < (D == 2 ? width : width * width); ++code) {
+        Index<D> I = cell;
+        I[D - 1] = outer;
+        for (int d = 0, rest = code; d + 1 < D; ++d, rest /= width) I[d] += rest % width - reach;
+        if (is_within(I, extent)) f(I);
     }
-}
-
-/// Returns whether the middle of a cell is in the liquid.
-template <int D>
-bool is_inside(const Interface<D>& s, const Index<D>& I) {
-    const real f = s.padded(I);
-    if (!is_cut(f)) return f > 0.5;
-    const Plane<D> own = plane_at<D>(s.padded.at(I), strides_of(s.padded));
-    return dot(own.m, Vec<D>::constant(0.5)) < own.alpha;
 }
 
 }  // namespace
@@ -125,8 +120,11 @@ void find_distance(const Interface<D>& s, Grid<real, D>& phi) {
                 });
     });
     for_each_cell(phi.extent(), [&](const Index<D>& I) {
-        if (is_inside(s, I)) phi(I) = -phi(I);
+        if (is_filled(s.padded(I))) phi(I) = -phi(I);
     });
+    for (const auto& plane : cuts)
+        for (const Cut<D>& cut : plane)
+            if (is_within(cut.cell, extent) && dot(cut.plane.m, middle) < cut.plane.alpha) phi(cut.cell) = -phi(cut.cell);
 }
 
 template void find_distance(const Interface<2>&, Grid<real, 2>&);

@@ -136,8 +136,7 @@ template <int D>
 void TwoPhase<D>::restore(const Checkpoint& from) {
     state_.restore(from);
     steps_ = get_count(from, "two_phase.steps");
-    ruled_ = from.get_value<std::array<std::int64_t, bounds>>("two_phase.ruled");
-    for (const std::int64_t count : ruled_) Checkpoint::require_within("two_phase.ruled", count, 0, std::int64_t{1} << 53);
+    ruled_ = get_counts<bounds>(from, "two_phase.ruled");
     if (has_open_sides()) poured_ = from.get_value<real>("two_phase.poured");
     find_face_densities();
     find_rate();

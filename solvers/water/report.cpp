@@ -2,6 +2,7 @@
 #include "free_surface/measure.hpp"
 #include "geometry/brush.hpp"
 #include "mac/grid/diagnostics.hpp"
+#include "parallel/plane_checkpoint.hpp"
 #include "water/solver.hpp"
 
 namespace weir::water {
@@ -117,9 +118,8 @@ void Water<D>::restore(const Checkpoint& from) {
         volume_.start(surface_, state_);  // files of older versions have no such block
     restore_markers(from);
     const auto reals = from.get_value<std::array<real, 3>>("water.reals");
-    const auto counts = from.get_value<std::array<std::int64_t, 3>>("water.counts");
+    const auto counts = get_counts<3>(from, "water.counts");
     Checkpoint::require_finite("water.reals", reals);
-    for (const std::int64_t count : counts) Checkpoint::require_within("water.counts", count, 0, std::int64_t{1} << 53);
     volume_target_ = reals[0], markers_.volume = reals[1], volume_shift_ = reals[2];
     steps_ = counts[0], escaped_ = communicator().rank() == 0 ? counts[1] : 0, reseeded_ = communicator().rank() == 0 ? counts[2] : 0;
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);

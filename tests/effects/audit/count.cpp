@@ -1,8 +1,9 @@
 // Instructions of a step with and without each effect of each solver in the registry, by callgrind (count.sh runs this program under it).
 // A step without an effect executes no more than one with it does outside the effect's own passes, within a thousandth: what is left is the
-// plain solver's step. An effect that is a term of another pass must make that pass more expensive where it is named; one that changes
-// numbers which are found as the scene is read must not. A plain step costs the same after every effect has been used as before. Not
-// covered: what an effect does to others by moving the fluid: steps are too short for that.
+// plain solver's step; an effect that takes the place of a part of the plain step is compared beside another that does. An effect that is a
+// term of another pass must make that pass more expensive where it is named; one that changes numbers which are found as the scene is read
+// must not. A plain step costs the same after every effect has been used as before. Not covered: what an effect does to others by moving
+// the fluid: steps are too short for that.
 #include "core/parallel.hpp"
 #include "effects/audit/instructions.hpp"
 #include "effects/audit/leaks.hpp"
