@@ -1,5 +1,6 @@
 // The schema of the solver "two_phase".
 #include "mac/grid/kind.hpp"
+#include "geometry/brush.hpp"
 #include "mac/grid/initial.hpp"
 #include "two_phase/effects.hpp"
 #include "two_phase/solver.hpp"
@@ -10,7 +11,7 @@ using scene::Key;
 using scene::Type;
 
 const mac::EffectKinds& body_forces() {
-    static const mac::EffectKinds kinds{mac::gravity()};
+    static const mac::EffectKinds kinds{mac::gravity(), mac::rotating_frame()};
     return kinds;
 }
 
@@ -23,6 +24,7 @@ std::vector<scene::Variant> effect_schemas() {
          {"sigma"}});
     list.push_back(
         {"viscosity", "Viscous stress of both fluids, with fluid.viscosity and gas.viscosity; implicit.", {}, {"fluid.viscosity"}});
+    list.push_back(geometry::brush_schema());
     return list;
 }
 

@@ -1,5 +1,6 @@
 // Output of both phases: fields, integrals, checkpoints.
 #include "free_surface/level_set.hpp"
+#include "geometry/brush.hpp"
 #include "mac/grid/diagnostics.hpp"
 #include "parallel/plane_checkpoint.hpp"
 #include "two_phase/level_set.hpp"
@@ -121,6 +122,7 @@ std::vector<Integral> TwoPhase<D>::integrals() const {
     for (int a = 0; a < D; ++a) list.push_back({std::string("momentum_") + "xyz"[a], "kg m/s" + per_depth, momentum[a]});
     const char* const rules[bounds] = {"steps_bound_by_speed", "steps_bound_by_tension", "steps_bound_by_gravity"};
     for (std::size_t i = 0; i < bounds; ++i) list.push_back({rules[i], "", static_cast<real>(ruled_[i])});
+    if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     return list;
 }
 
@@ -130,6 +132,7 @@ void TwoPhase<D>::save(Checkpoint& to) const {
     to.put_value("two_phase.steps", steps_);
     to.put_value("two_phase.ruled", ruled_);
     if (has_open_sides()) to.put_value("two_phase.poured", poured_);
+    if (brush_forcing_) brush_forcing_->save(to);
 }
 
 template <int D>
@@ -138,6 +141,7 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
     steps_ = get_count(from, "two_phase.steps");
     ruled_ = get_counts<bounds>(from, "two_phase.ruled");
     if (has_open_sides()) poured_ = from.get_value<real>("two_phase.poured");
+    if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     find_face_densities();
     find_rate();
     distance_is_stale_ = true;

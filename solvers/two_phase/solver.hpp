@@ -67,6 +67,7 @@ public:
     Passes& passes() override { return passes_; }
     std::size_t bytes() const override;
     std::vector<EffectPlan> effects() const override { return effects_.plans(); }
+    BrushForcing* brush() const override { return brush_forcing_.get(); }
 
     /// For tests and studies.
     const MacState<D>& state() const { return state_; }
@@ -110,6 +111,7 @@ private:
     FractionGhosts<D> ghosts_of_fraction_;
     Around<D> around_;
     Effects<MacState<D>> effects_;
+    std::shared_ptr<BrushForcing> brush_forcing_;  // nullptr where the scene has none
     Vec<D> gravity_{};
     int up_ = 1;
     Transport<D> transport_;

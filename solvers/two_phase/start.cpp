@@ -1,6 +1,7 @@
 // The initial state of a scene with liquid and gas.
 #include "free_surface/start.hpp"
 #include "core/error.hpp"
+#include "geometry/brush.hpp"
 #include "mac/grid/effects.hpp"
 #include "mac/grid/inflow.hpp"
 #include "mac/grid/initial.hpp"
@@ -63,12 +64,17 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
       ghosts_of_fraction_(state_.sides, -1, entering_),
       around_(state_.sides, state_.u.cells),
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
+      brush_forcing_(geometry::make_brush(scene, {BrushKind::push, BrushKind::pull})),
       gravity_(free_surface::gravity_of<D>(scene)),
       up_(free_surface::up_axis<D>(gravity_)),
       transport_(state_, entering_),
       fraction_ghosts_(state_.extent()),
       projection_(options_.poisson, state_) {
     refuse_sides(scene);
+    if (brush_forcing_)
+        effects_.add("hand", brush_effect<D>(brush_forcing_, Stage::force, [this](int a, const Index<D>& I) {
+                         return options_.rho.of(faces_[static_cast<std::size_t>(a)](I));
+                     }));
     place_solids(scene);
     free_surface::refuse_flat_cells(scene, free_surface::Frame<D>(state_.u, state_.sides));
     options_.gravity = norm(gravity_);

@@ -10,7 +10,8 @@ namespace {
 template <int D>
 class BrushOnGrid final : public MacEffect<D> {
 public:
-    BrushOnGrid(std::shared_ptr<BrushForcing> forcing, Stage stage) : brush_forcing_(std::move(forcing)), stage_(stage) {}
+    BrushOnGrid(std::shared_ptr<BrushForcing> forcing, Stage stage, FaceDensity<D> density)
+        : brush_forcing_(std::move(forcing)), stage_(stage), density_(std::move(density)) {}
     Stage stage() const override { return stage_; }
     void apply(MacState<D>& s, real dt) override {
         const auto brush = brush_forcing_->at<D>(s.time);
@@ -57,7 +58,7 @@ private:
                 if (share == 0) return 0;
                 const real change = brush_forcing_->share(weight, dt) * (brush.target(x, most)[a] - s.u[a](I));
                 s.u[a](I) += change;
-                return share * change;
+                return share * change * (density_ ? density_(a, I) / s.rho : 1);
             });
             brush_forcing_->impulse[a] += s.rho * s.u.cell_volume() * given;
         }
@@ -73,6 +74,7 @@ private:
 
     std::shared_ptr<BrushForcing> brush_forcing_;
     Stage stage_;
+    FaceDensity<D> density_;
 };
 
 }  // namespace
@@ -82,11 +84,11 @@ std::initializer_list<BrushKind> kinds_of_brush(const scene::Scene& scene) {
 }
 
 template <int D>
-std::unique_ptr<MacEffect<D>> brush_effect(std::shared_ptr<BrushForcing> forcing, Stage stage) {
-    return std::make_unique<BrushOnGrid<D>>(std::move(forcing), stage);
+std::unique_ptr<MacEffect<D>> brush_effect(std::shared_ptr<BrushForcing> forcing, Stage stage, FaceDensity<D> density) {
+    return std::make_unique<BrushOnGrid<D>>(std::move(forcing), stage, std::move(density));
 }
 
-template std::unique_ptr<MacEffect<2>> brush_effect<2>(std::shared_ptr<BrushForcing>, Stage);
-template std::unique_ptr<MacEffect<3>> brush_effect<3>(std::shared_ptr<BrushForcing>, Stage);
+template std::unique_ptr<MacEffect<2>> brush_effect<2>(std::shared_ptr<BrushForcing>, Stage, FaceDensity<2>);
+template std::unique_ptr<MacEffect<3>> brush_effect<3>(std::shared_ptr<BrushForcing>, Stage, FaceDensity<3>);
 
 }  // namespace weir::mac

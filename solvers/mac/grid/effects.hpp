@@ -39,9 +39,12 @@ EffectKind rotating_frame();
 
 /// The kinds of interactive forcing in this scene: heat needs a substance, grab needs bodies.
 std::initializer_list<BrushKind> kinds_of_brush(const scene::Scene& scene);
-/// Interactive forcing (geometry/brush.hpp), applied at this stage.
+/// Density of a face's volume [kg/m³], of velocity component a.
 template <int D>
-std::unique_ptr<MacEffect<D>> brush_effect(std::shared_ptr<BrushForcing> forcing, Stage stage);
+using FaceDensity = std::function<real(int a, const Index<D>& I)>;
+/// Interactive forcing (geometry/brush.hpp), applied at this stage. `density`: empty if it is that of the state everywhere.
+template <int D>
+std::unique_ptr<MacEffect<D>> brush_effect(std::shared_ptr<BrushForcing> forcing, Stage stage, FaceDensity<D> density = {});
 
 /// Registers the two instantiations of one template.
 template <template <int> class E>
