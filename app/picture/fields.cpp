@@ -68,6 +68,7 @@ void level_set_as_markers(output::FrameData& frame) {
                     for (std::size_t a = 0; a < 3; ++a) x[a].push_back(at[a]);
                 }
     frame.particles["markers"]["position"] = std::move(x);
+    frame.particles["markers"][from_level_set] = {};
 }
 
 std::string best_field(const output::FrameData& frame) {

@@ -50,9 +50,27 @@ struct Splats {
         fastest = view.range.high.value_or(field ? *std::max_element(speeds.begin(), speeds.end()) : robust_max(speeds));
         slowest = view.range.low.value_or(field ? *std::min_element(speeds.begin(), speeds.end()) : 0);
         if (field) colours = view.field == "temperature" ? "inferno" : "viridis";
+        if (view.frame.particles.at("markers").count(from_level_set)) {
+            fill_liquid(view, plane);
+            return;
+        }
         const real radius = view.frame.grid.spacing[0] / plane.metre;  // pixels
         for (std::size_t m = 0; m < speeds.size(); ++m)
             add((x[0][m] - plane.x0) / plane.metre, (plane.y1 - x[1][m]) / plane.metre, radius, speeds[m], plane);
+    }
+    /// Without markers: by the distance to the level set, as wide a rim as that of markers.
+    void fill_liquid(const View& view, const Plane& plane) {
+        const auto &phi = view.frame.cells.at(level_set_name)[0], speeds = scalar_field(view.frame, "speed");
+        const auto lattice = sim::Lattice::of_cells(view.frame.grid);
+        const real h = view.frame.grid.spacing[0];
+        parallel_for(0, plane.height, [&](int y) {
+            for (int px = 0; px < plane.width; ++px) {
+                const Vec<2> at = plane.place(px, y);
+                const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(plane.width) + static_cast<std::size_t>(px);
+                weight[i] = std::clamp(0.5 - 1.8 * sim::sample(phi, lattice, {{at[0], at[1], 0}}) / h, 0.0, 4.0);
+                speed[i] = weight[i] * sim::sample(speeds, lattice, {{at[0], at[1], 0}});
+            }
+        });
     }
     void add(real cx, real cy, real radius, real value, const Plane& plane) {
         const int x0 = std::max(0, static_cast<int>(cx - radius)), x1 = std::min(plane.width - 1, static_cast<int>(cx + radius));

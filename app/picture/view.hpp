@@ -30,6 +30,8 @@ inline auto bodies_of(const output::FrameData& frame) {
 void particles_as_markers(output::FrameData& frame, const scene::Scene& scene);
 /// Lets a run of liquid that has a level set and no markers be drawn as water: 2^D markers to a cell where the level set is negative.
 void level_set_as_markers(output::FrameData& frame);
+/// The name in such a set of markers that says where they come from.
+inline constexpr const char* from_level_set = "from level set";
 /// The field worth showing: water where there are markers, else smoke, temperature, speed.
 std::string best_field(const output::FrameData& frame);
 /// A cell field by name; "speed" and (in 2D) "vorticity" are made from the velocity. Throws BadInput naming what there is.
