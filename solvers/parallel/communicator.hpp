@@ -173,6 +173,16 @@ inline real largest_of_ranks(const OwnPlanes& own, real here) {
     return detail::largest_of(list, static_cast<int>(list.size()));
 }
 
+/// Evaluates f() on the rank that owns one end of the partitioned axis and broadcasts the result.
+template <class F>
+auto of_rank_at(const OwnPlanes& planes, int end, F&& f) -> decltype(f()) {
+    if (!planes.distributed()) return f();
+    const int owner = end == 0 ? 0 : communicator().ranks() - 1;
+    decltype(f()) own{};
+    if (communicator().rank() == owner) own = f();
+    return of_ranks(own)[static_cast<std::size_t>(owner)];
+}
+
 /// Sum of a value over the ranks that share these planes; for replicated work the value itself.
 inline std::int64_t sum_of_ranks(const OwnPlanes& own, std::int64_t value) {
     if (!own.distributed()) return value;

@@ -55,6 +55,12 @@ struct OwnPlanes {
         if (end != INT_MAX) range.end += planes;
         return range;
     }
+    /// Also the plane above the last one: the upper faces of its cells.
+    OwnPlanes with_upper_faces() const {
+        OwnPlanes range = *this;
+        if (end != INT_MAX) ++range.end;
+        return range;
+    }
     /// These planes alone: of the given ones, without the range of this rank.
     static OwnPlanes only(const Slab* slab, int begin, int end) {
         OwnPlanes range;

@@ -32,16 +32,6 @@ real ambient_temperature(const scene::Scene& scene) {
     return 0;
 }
 
-/// Evaluates f() on the rank that owns one end of the partitioned axis and broadcasts the result.
-template <class F>
-auto of_rank_at(const OwnPlanes& planes, int end, F&& f) -> decltype(f()) {
-    if (!planes.distributed()) return f();
-    const int owner = end == 0 ? 0 : communicator().ranks() - 1;
-    decltype(f()) own{};
-    if (communicator().rank() == owner) own = f();
-    return of_ranks(own)[static_cast<std::size_t>(owner)];
-}
-
 /// Inflow must be balanced: by an open side, or by equal outflow through other inflow sides, up to rounding of the sums.
 template <int D>
 void refuse_closed_box(const scene::Scene& scene, const MacState<D>& s) {

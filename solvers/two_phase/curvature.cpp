@@ -10,7 +10,6 @@ namespace weir::two_phase {
 
 namespace {
 
-constexpr int reach = 5;            // cells of a column on either side of the middle one
 constexpr real ends_within = 1e-8;  // of 0 or 1: a column ends there
 
 /// Height of the liquid above the middle of cell I along `sign` times the axis, in cells. False where the column does not lead from a full
@@ -26,14 +25,14 @@ bool find_height(const Interface<D>& s, const Index<D>& I, int axis, int sign, r
     bool ends_empty = middle <= ends_within, ends_full = middle >= 1 - ends_within;
     result = middle - 0.5;
     real last = middle;
-    for (int k = 1; k <= reach && !ends_empty; ++k) {
+    for (int k = 1; k <= column_reach && !ends_empty; ++k) {
         const real f = at(k);
         if (f > last + ends_within && last < 1 - ends_within) return false;
         result += last = f;
         ends_empty = f <= ends_within;
     }
     last = middle;
-    for (int k = 1; k <= reach && !ends_full; ++k) {
+    for (int k = 1; k <= column_reach && !ends_full; ++k) {
         const real f = at(-k);
         if (f < last - ends_within && last > ends_within) return false;
         result -= 1 - f;
@@ -117,6 +116,7 @@ void find_curvature(const Interface<D>& s, WithoutHeights otherwise, Curvature<D
         kappa = curvature_by_heights(s, I);
         if (kappa == no_curvature && otherwise == WithoutHeights::fit) kappa = curvature_by_fit(s, I);
     });
+    refresh(result.found, s.around.repeats());
     for_each_cell(cells, [&](const Index<D>& I) {
         const real found = result.found(I);
         const bool missing = found == no_curvature && is_interfacial(s.padded, I);

@@ -8,7 +8,11 @@ namespace weir::two_phase {
 /// Where no curvature is known.
 inline constexpr real no_curvature = infinity;
 
-/// What curvature is computed from: the fractions of cells, in a grid and with three layers of ghosts.
+/// Cells of a column of heights on either side of the middle one.
+inline constexpr int column_reach = 5;
+
+/// What curvature is computed from: the fractions of cells, in a grid and with three layers of ghosts. In parallel the grid needs
+/// column_reach ghost planes.
 template <int D>
 struct Interface {
     const Grid<real, D>& f;

@@ -37,7 +37,7 @@ void FractionGhosts<D>::set_entering(Padded<D>& q) const {
             const auto& given = entering_[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)];
             if (!given) continue;
             Index<D> lo = Index<D>::constant(-ghost_layers);
-            Extent<D> hi(q.extent() + Index<D>::constant(ghost_layers));
+            Extent<D> hi = q.extent().wider(ghost_layers) + Index<D>::constant(ghost_layers);
             (end == 0 ? hi[a] : lo[a]) = end == 0 ? 0 : q.extent()[a];
             for_each_in(lo, hi, [&](const Index<D>& I) { q(I) = *given; });
         }
@@ -48,17 +48,19 @@ template <int D>
 void FractionGhosts<D>::mirror_about_sides(Padded<D>& q) const {
     const int a = mirrored_axis_;
     if (a < 0) return;
-    Extent<D> lines(q.extent() + Index<D>::constant(2 * ghost_layers));
-    lines[a] = 1;
+    Index<D> lo = Index<D>::constant(-ghost_layers);
+    Extent<D> hi = q.extent().wider(ghost_layers) + Index<D>::constant(ghost_layers);
+    if (a == D - 1) hi.own = {};
+    lo[a] = 0, hi[a] = 1;
     const int n = q.extent()[a] - 1;
-    for_each_cell(lines, [&](const Index<D>& line) {
-        Index<D> from = line - Index<D>::constant(ghost_layers), to = from;
-        for (int k = 1; k <= ghost_layers; ++k) {
-            to[a] = -k, from[a] = std::min(k, n);
+    for_each_in(lo, hi, [&](const Index<D>& line) {
+        Index<D> from = line, to = line;
+        const auto copy = [&](int source, int target) {
+            if (a == D - 1 && !(q.holds(source) && q.holds(target))) return;
+            from[a] = source, to[a] = target;
             q(to) = q(from);
-            to[a] = n + k, from[a] = std::max(n - k, 0);
-            q(to) = q(from);
-        }
+        };
+        for (int k = 1; k <= ghost_layers; ++k) copy(std::min(k, n), -k), copy(std::max(n - k, 0), n + k);
     });
 }
 

@@ -66,6 +66,8 @@ public:
         for (int d = 0; d < D; ++d) periodic_[static_cast<std::size_t>(d)] = sides.periodic(d);
     }
     Index<D> operator()(Index<D> I) const;
+    /// Returns whether the slowest axis is periodic.
+    bool repeats() const { return periodic_[D - 1]; }
     /// False where I lies beyond a side that is not periodic; otherwise I becomes the index within the domain.
     bool wrap(Index<D>& I) const;
 

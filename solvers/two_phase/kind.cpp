@@ -2,6 +2,8 @@
 #include "mac/grid/kind.hpp"
 #include "geometry/brush.hpp"
 #include "mac/grid/initial.hpp"
+#include "mac/grid/own_planes.hpp"
+#include "scene/one_process.hpp"
 #include "two_phase/effects.hpp"
 #include "two_phase/solver.hpp"
 
@@ -80,6 +82,10 @@ Key side_keys() {
     return sides;
 }
 
+void check_parallel(const scene::Scene& scene) {
+    if (scene.effect("viscosity")) scene::one_process_only(scene, "effects.viscosity", "viscosity of two phases is");
+}
+
 }  // namespace
 
 scene::SolverKind kind() {
@@ -107,7 +113,8 @@ scene::SolverKind kind() {
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},
              {"transport momentum", "transport liquid", "densities", "project"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ngas = { density = 1.2 }\ninitial.velocity = \"random\""}};
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ngas = { density = 1.2 }\ninitial.velocity = \"random\""},
+            {.check = check_parallel, .replicated_work = mac::replicated_pressure, .distributed_storage = mac::holds_own_planes}};
 }
 
 }  // namespace weir::two_phase

@@ -80,12 +80,12 @@ struct Cut {
     Plane<D> plane;
 };
 
-/// The cut cells by their index along the slowest axis, from -reach; ghost cells of that width included.
+/// The cut cells of this rank by their index along the slowest axis, from -reach; ghost cells of that width included.
 template <int D>
-std::vector<std::vector<Cut<D>>> find_cuts(const Interface<D>& s, const Index<D>& extent) {
+std::vector<std::vector<Cut<D>>> find_cuts(const Interface<D>& s, const Extent<D>& extent) {
     const Strides<D> stride = strides_of(s.padded);
     std::vector<std::vector<Cut<D>>> cuts(static_cast<std::size_t>(extent[D - 1] + 2 * reach));
-    for_each_in(Index<D>::constant(-reach), replicated(extent + Index<D>::constant(reach)), [&](const Index<D>& I) {
+    for_each_in(Index<D>::constant(-reach), extent.wider(reach) + Index<D>::constant(reach), [&](const Index<D>& I) {
         if (is_cut(s.padded(I))) cuts[static_cast<std::size_t>(I[D - 1] + reach)].push_back({I, plane_at<D>(s.padded.at(I), stride)});
     });
     return cuts;
@@ -107,7 +107,7 @@ void for_each_near(const Index<D>& cell, int outer, const Index<D>& extent, F&& 
 
 template <int D>
 void find_distance(const Interface<D>& s, Grid<real, D>& phi) {
-    const Index<D> extent = phi.extent();
+    const Extent<D>& extent = phi.extent();
     const real farthest = reach * *std::min_element(s.h.begin(), s.h.end());
     const Vec<D> middle = Vec<D>::constant(0.5);
     for_each_cell(phi.extent(), [&](const Index<D>& I) { phi(I) = std::min(farthest, distance_to_faces(s, I)); });
@@ -124,7 +124,8 @@ void find_distance(const Interface<D>& s, Grid<real, D>& phi) {
     });
     for (const auto& plane : cuts)
         for (const Cut<D>& cut : plane)
-            if (is_within(cut.cell, extent) && dot(cut.plane.m, middle) < cut.plane.alpha) phi(cut.cell) = -phi(cut.cell);
+            if (is_within(cut.cell, extent) && extent.own.contains(cut.cell[D - 1]) && dot(cut.plane.m, middle) < cut.plane.alpha)
+                phi(cut.cell) = -phi(cut.cell);
 }
 
 template void find_distance(const Interface<2>&, Grid<real, 2>&);

@@ -11,11 +11,17 @@
 namespace weir::two_phase {
 
 template <int D>
-FieldSet TwoPhase<D>::fields() const {
-    FieldSet set = field_set(state_);
+void TwoPhase<D>::update_distance() const {
     if (distance_.empty()) distance_ = Grid<real, D>(state_.extent());
     if (distance_is_stale_) find_distance(interface(), distance_);
     distance_is_stale_ = false;
+}
+
+template <int D>
+FieldSet TwoPhase<D>::fields() const {
+    FieldSet set = field_set(state_);
+    if (own().distributed_storage()) set.cut = &own().partition();
+    update_distance();
     set.fields.push_back({level_set_name, "m", Where::cell, "", {distance_.values()}});
     return set;
 }
@@ -142,6 +148,8 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
     ruled_ = get_counts<bounds>(from, "two_phase.ruled");
     if (has_open_sides()) poured_ = from.get_value<real>("two_phase.poured");
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
+    whole_ = !own().distributed();
+    refresh(state_.u[D - 1], around_.repeats());
     find_face_densities();
     find_rate();
     distance_is_stale_ = true;
@@ -158,6 +166,7 @@ std::size_t TwoPhase<D>::bytes() const {
 }
 
 #define WEIR_INSTANTIATE(D)                                               \
+    template void TwoPhase<D>::update_distance() const;                   \
     template FieldSet TwoPhase<D>::fields() const;                        \
     template real TwoPhase<D>::sum_of_faces(int, real (*)(real)) const;   \
     template Vec<D> TwoPhase<D>::moment_of_liquid() const;                \

@@ -14,9 +14,13 @@ template <int D>
 ContinuedFractions<D>::ContinuedFractions(const MacState<D>& state, const Around<D>& around) {
     Grid<std::uint8_t, D> layer(state.extent());  // 0: not reached
     for_each_cell(layer.extent(), [&](const Index<D>& I) { layer(I) = is_open(state, I) ? 1 : 0; });
+    const auto plane = static_cast<std::size_t>(layer.stride(D - 1));
+    const std::size_t first = static_cast<std::size_t>(layer.own().lower(0)) * plane,
+                      last = static_cast<std::size_t>(layer.own().upper(layer.extent()[D - 1])) * plane;
     for (std::size_t number = 0; number < layers_.size(); ++number) {
         const auto source = static_cast<std::uint8_t>(number + 1);
-        for (std::size_t at = 0; at < layer.size(); ++at) {
+        refresh(layer, around.repeats());
+        for (std::size_t at = first; at < last; ++at) {
             if (layer[at] != 0) continue;
             Closed closed{index_of<D>(layer.extent(), at), 0};
             for (int k = 0; k < block_cells<D>; ++k)
@@ -50,7 +54,7 @@ real ContinuedFractions<D>::value(const Padded<D>& f, const Closed& closed) {
 template <int D>
 void ContinuedFractions<D>::extend(const FractionGhosts<D>& ghosts, Padded<D>& padded, Grid<real, D>& f) const {
     for (const auto& layer : layers_) {
-        if (layer.empty()) continue;
+        if (layer.empty() && !f.own().distributed()) continue;  // the exchange is collective
         parallel_for(0, static_cast<int>(layer.size()), [&](int i) {
             const Closed& closed = layer[static_cast<std::size_t>(i)];
             f(closed.cell) = value(padded, closed);

@@ -13,6 +13,7 @@ namespace weir::two_phase {
 /// of the cells.
 template <int D>
 StepReport TwoPhase<D>::step(real dt) {
+    whole_ = !own().distributed();
     ++ruled_[static_cast<std::size_t>(ruling_bound())];
     transport(dt);                                      // ∂f/∂t + ∇·(f u) = 0,  ∂(ρu)/∂t + ∇·(ρ u u) = 0
     find_face_densities();                              // ρ_a of the half cells beside each face
@@ -83,6 +84,7 @@ void TwoPhase<D>::find_face_densities() {
             state_.mobility[at](I) = state_.rho / options_.rho.of(experiment_.mean_density ? mean(I) : faces_[at](I));
         });
     }
+    exchange_densities();
 }
 
 template <int D>
@@ -96,12 +98,14 @@ template <int D>
 void TwoPhase<D>::apply_tension(real dt) {
     if (options_.sigma == 0) return;
     const auto timed = passes_.time("effect surface_tension");
+    refresh(state_.fields[0].values, around_.repeats(), column_reach);
     if (experiment_.fixed_curvature != 0)
         for_each_cell(curvature_.kappa.extent(), [&](const Index<D>& I) {
             curvature_.kappa(I) = is_interfacial(fraction_ghosts_, I) ? experiment_.fixed_curvature : no_curvature;
         });
     else
         find_curvature(interface(), experiment_.curvature, curvature_);
+    refresh(curvature_.kappa, around_.repeats());
     add_tension<D>(state_, fraction_ghosts_, around_, curvature_.kappa, faces_, options_.rho, options_.sigma, dt);
 }
 

@@ -58,6 +58,8 @@ public:
     real advised_dt() const override;
     StepLimit stable_dt() const override;
     FieldSet fields() const override;
+    void synchronize() override;
+    bool holds_own_planes() const override { return own().distributed_storage(); }
     bool checks_itself() const override { return true; }
     std::vector<Integral> integrals() const override;
     real time() const override { return state_.time; }
@@ -76,6 +78,10 @@ public:
     const FaceFractions<D>& face_fractions() const { return faces_; }
 
 private:
+    /// Ghost planes of arrays without a larger requirement: those that readers of fields need.
+    static constexpr int planes_beside = 2;
+
+    const OwnPlanes& own() const { return state_.own(); }
     // Start (start.cpp)
     void refuse_sides(const scene::Scene& scene) const;
     bool has_open_sides() const;
@@ -92,6 +98,8 @@ private:
     const poisson::Report& project(real dt);
     void find_rate();
     void check() const;
+    void exchange_densities();  // in parallel (ranks.cpp)
+    void update_distance() const;
 
     Interface<D> interface() const { return {fraction(), fraction_ghosts_, around_, state_.u.h}; }
     real limit(Bound bound) const;
@@ -124,6 +132,7 @@ private:
     Projection<D> projection_;
     mutable Grid<real, D> distance_;  // for drawing and probes; empty until it is shown
     mutable bool distance_is_stale_ = true;
+    bool whole_ = true;  // other ranks' planes, or the ghost planes, are up to date
     std::int64_t steps_ = 0;
     std::array<std::int64_t, bounds> ruled_{};  // steps that each bound ruled
     real poured_ = 0;                           // liquid that came in through sides since the start, less what left [m³; m²]

@@ -5,6 +5,7 @@
 #include "mac/grid/effects.hpp"
 #include "mac/grid/inflow.hpp"
 #include "mac/grid/initial.hpp"
+#include "mac/grid/own_planes.hpp"
 #include "scene/names.hpp"
 #include "two_phase/effects.hpp"
 #include "two_phase/solver.hpp"
@@ -55,10 +56,10 @@ EnteringFractions<D> entering_fractions(const scene::Scene& scene, const geometr
 }  // namespace
 
 template <int D>
-TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experiment& experiment)
+TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition& partition, const Experiment& experiment)
     : options_(scene),
       experiment_(experiment),
-      state_(scene, two_phase::fields()),
+      state_(scene, two_phase::fields(), slab_of<D>(scene, partition, planes_beside)),
       solids_(geometry::Solids<D>(scene), state_),
       entering_(entering_fractions<D>(scene, state_.sides)),
       ghosts_of_fraction_(state_.sides, -1, entering_),
@@ -95,6 +96,7 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition&, const Experim
             std::make_unique<Viscosity<D>>(state_, solids_, options_.rho.liquid * options_.nu_liquid, options_.rho.gas * options_.nu_gas);
         effects_.declare({.name = "viscosity", .pass = effect_pass("viscosity"), .bytes = viscosity_->bytes() + sizeof(*viscosity_)});
     }
+    whole_ = !own().distributed();
     start_liquid(scene);
     start_velocity(scene);
     find_rate();

@@ -20,8 +20,8 @@ Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& en
       cell_ghosts_(state.sides, -1, entering),
       cell_fraction_(state.extent()),
       velocity_(state.u),
-      liquid_flux_(Extent<D>(state.u.cells + Index<D>::constant(2))),
-      momentum_flux_(liquid_flux_.extent()) {
+      liquid_flux_(state.u.cells + Index<D>::constant(2), 0, 1),
+      momentum_flux_(liquid_flux_) {
     for (int a = 0; a < D; ++a) {
         face_ghosts_[static_cast<std::size_t>(a)] = FractionGhosts<D>(state.sides, a, entering);
         face_fraction_[static_cast<std::size_t>(a)] = Padded<D>(state.u[a].extent());
@@ -98,13 +98,17 @@ real Transport<D>::inflow(int d) const {
     for (const int end : {0, 1}) {
         const auto kind = sides_.side(d, end).kind;
         if (kind != geometry::SideKind::outflow && kind != geometry::SideKind::inflow) continue;
-        Extent<D> plane(cell_fraction_.extent());
+        const Extent<D>& cells = cell_fraction_.extent();
+        Extent<D> plane = d == D - 1 ? replicated<D>(cells) : cells;
         plane[d] = 1;
-        const int at = end == 0 ? 0 : cell_fraction_.extent()[d];
-        const real through = sum_over(plane, [&](Index<D> I) {
-            I[d] = at;
-            return liquid_flux_(I);
-        });
+        const int at = end == 0 ? 0 : cells[d];
+        const auto sum_of_side = [&] {
+            return sum_over(plane, [&](Index<D> I) {
+                I[d] = at;
+                return liquid_flux_(I);
+            });
+        };
+        const real through = d == D - 1 ? of_rank_at(cells.own, end, sum_of_side) : sum_of_side();
         sum += end == 0 ? through : -through;
     }
     return sum;
@@ -115,7 +119,9 @@ template <int D>
 void Transport<D>::find_fluxes(const Volumes& v, int d) {
     const Strides<D> stride = strides_of(v.f);
     const std::ptrdiff_t by = stride[static_cast<std::size_t>(d)];
-    for_each_cell(Extent<D>(v.f.extent() + e<D>(d)), [&](const Index<D>& I) {
+    Extent<D> faces = v.f.extent() + e<D>(d);
+    if (d == D - 1) faces.own = faces.own.with_upper_faces();
+    for_each_cell(faces, [&](const Index<D>& I) {
         const real C = v.courant(d, I), width = std::abs(C);
         const std::ptrdiff_t out = C > 0 ? by : -by;
         const real* f = v.f.at(I) - (C > 0 ? by : 0);  // of the donor

@@ -176,7 +176,7 @@ void Projection<D>::set_matrix(const MacState<D>& s, const Grid<real, D>* heavy)
     if (!s.mobility[0].empty()) leave_out_ice();
     if (heavy != nullptr) {
         if (matrix_.light.empty()) matrix_.light = Grid<std::uint8_t, D>(heavy->extent());
-        for_each_cell(heavy->extent(), [&](const Index<D>& I) { matrix_.light(I) = (*heavy)(I) < 0.5; });
+        for_each_held(matrix_.light, Index<D>{}, heavy->extent(), [&](const Index<D>& I) { matrix_.light(I) = (*heavy)(I) < 0.5; });
     }
     solver_->setup(matrix_);
 }

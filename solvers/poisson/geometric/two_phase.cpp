@@ -17,7 +17,7 @@ void TwoPhase<D>::setup(const Operator<D>& A, bool distributed) {
     two_phases_ = !A.light.empty();
     if (!two_phases_) return;
     Grid<std::uint8_t, D> light = A.light;
-    for_each_cell<D>(light.extent(), [&](const Index<D>& I) { light(I) = light(I) != 0 && A.cells(I) == Cell::fluid; });
+    for_each_held(light, Index<D>{}, light.extent(), [&](const Index<D>& I) { light(I) = light(I) != 0 && A.cells(I) == Cell::fluid; });
     if (distributed) gather(light);
     find_light_components<D>(light, A.periodic, light_);
 }
