@@ -89,6 +89,7 @@ in_two_parts() {
 flat=$scenes/ranks.toml deep=$scenes/ranks_3d.toml drops=$scenes/ranks_particles.toml drops_deep=$scenes/ranks_particles_3d.toml
 tall=$scenes/ranks_tall.toml tall_deep=$scenes/ranks_tall_3d.toml
 water=$scenes/ranks_water.toml water_deep=$scenes/ranks_water_3d.toml one_end=$scenes/ranks_one_end.toml shallow=$scenes/ranks_shallow.toml columns=$scenes/ranks_columns.toml
+gas=$scenes/ranks_two_phase.toml gas_deep=$scenes/ranks_two_phase_3d.toml
 sea=$scenes/ranks_waves.toml trains=$scenes/ranks_trains.toml below=$scenes/ranks_waves_below.toml line=$scenes/ranks_line.toml
 # without friction and a gauge; with every probe, some beside cuts; and with cells that a periodic axis can halve
 frictionless=(--set 'effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07},volume_control={}}' --set 'fluid={density=1000.0}'
@@ -100,6 +101,10 @@ probes_deep=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name=
 probes_tall=(--set 'probes=[{name="gauge",kind="gauge",at=[0.2,0.0,0.26]},{name="x",kind="front",axis="x"},{name="y",kind="front",axis="y"},
     {name="z",kind="front",axis="z"},{name="floor",kind="wall_pressure",at=[0.1,0.0,0.26]},{name="ball",kind="wall_pressure",at=[0.3,0.15,0.18]},
     {name="sums",kind="integral",field="volume"},{name="high",kind="point",field="cell_height",at=[0.2,0.1,0.16]}]')
+probes_gas=(--set 'probes=[{name="gauge",kind="gauge",at=[0.1,0.0,0.32]},{name="y",kind="front",axis="y"},{name="z",kind="front",axis="z"},
+    {name="floor",kind="wall_pressure",at=[0.1,0.0,0.32]},{name="ball",kind="wall_pressure",at=[0.3,0.32,0.34]},{name="sums",kind="integral",field="poured_volume"}]')
+# without solids, inflow and probes
+closed='--set sides={} --set solids=[] --set probes=[]'
 # some four cells a step, where a rank has four ghost planes as it begins
 fast='--set initial.velocity={name="random",speed=4.0} --set time.dt=0.01 --set time.guard="off"'
 even="--set grid.cells=[32,30,32] --set grid.size=[0.64,0.6,0.64]"
@@ -400,6 +405,39 @@ tallcell)
     for scene in "$tall" "$tall_deep"; do
         in_two_parts 0.03 0.06 "$scene"
     done
+    ;;
+two_phase) # liquid and gas
+    tension='effects={surface_tension={sigma=0.07}}'
+    falling='effects={gravity={g=[0.5,-9.81]},surface_tension={sigma=0.07}}'
+    flat_ring='sides={x_min={kind="periodic"},x_max={kind="periodic"},y_min={kind="periodic"},y_max={kind="periodic"}}'
+    blown='sides={z_min={kind="inflow",velocity=[0.0,0.0,0.5],fluid="gas"},z_max={kind="outflow"},x_max={kind="inflow",velocity=[-0.3,0.0,0.0]}}'
+    compare ball "$every" "$gas" "${probes[@]}"
+    holds_own ball-2 ball-4
+    grep -q '"replicated_work":\["small_pressure_levels"\]' ball-2/run.json || fail "run.json does not tell what is not shared"
+    compare deep "$every" "$gas_deep" $even
+    holds_own deep-2 deep-4
+    compare few "2 1,4 1" "$gas_deep" # cells that the periodic axis cannot halve: the pressure is solved by every rank
+    holds_whole few-2
+    compare dam "2 1,4 1" "$scenes/../../../cases/dam_break_gas/scene.toml" --set grid.cells=[216,96] --set grid.size=[0.3429,0.1524] --set time.end=0.02
+    holds_own dam-2
+    compare drop "2 1,4 1" "$gas" $closed --set 'liquid=[{shape="sphere",centre=[0.45,0.475],radius=0.2}]' --set "$tension" --set time.end=0.03
+    holds_own drop-2
+    compare bubble "3 1" "$gas" $closed --set "$flat_ring" --set "$falling" \
+        --set 'liquid=[{shape="difference",from={shape="box",min=[-1.0,-1.0],max=[2.0,0.7]},minus=[{shape="sphere",centre=[0.45,0.475],radius=0.2}]}]'
+    compare blown "2 1,4 1" "$gas_deep" $even --set "$blown" --set 'effects={gravity={g=[0.0,-9.81,1.0]}}' \
+        --set 'solids=[{shape="sphere",centre=[0.3,0.2,0.34],radius=0.12}]' "${probes_gas[@]}"
+    holds_own blown-4
+    compare alone "3 1" "$gas" --set scheme.poisson.method=cg_mic0
+    holds_whole alone-3
+    keep_four=yes compare thin "4 1" "$gas" $closed --set grid.cells=[24,5] --set grid.size=[0.9,0.2] --set "$falling"
+    # so many bubbles that the pressure takes aggregates by phase, on every rank
+    bubbles=$(for j in 1 2 3 4; do for i in 1 2 3 4; do echo "{shape=\"sphere\",centre=[0.$((2 * i)),0.$((2 * j))],radius=0.05}"; done; done | paste -sd,)
+    compare cloud "3 1" "$gas" $closed --set "liquid=[$bubbles]" --set fluid.density=1.0 --set gas.density=1000.0 --set time.end=0.006
+    in_two_parts 0.006 0.012 "$gas"
+    in_two_parts 0.004 0.008 "$gas_deep" $even
+    poisoned 3 1 "$gas"
+    poisoned 3 1 "$gas_deep" $even
+    poisoned 4 1 "$gas_deep" # at most 8 planes each, and heights read 5
     ;;
 particles_schemes)
     compare tolerant "3 2" "$drops" --set scheme.tolerance=1e-3 --set scheme.warm_start=0.4 --set scheme.kernel=muller --set effects.artificial_pressure.k=1e-4
