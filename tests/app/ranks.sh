@@ -435,6 +435,21 @@ two_phase) # liquid and gas
     compare cloud "3 1" "$gas" $closed --set "liquid=[$bubbles]" --set fluid.density=1.0 --set gas.density=1000.0 --set time.end=0.006
     in_two_parts 0.006 0.012 "$gas"
     in_two_parts 0.004 0.008 "$gas_deep" $even
+    # bytes of each rank: arrays with at most 5 ghost planes on both sides and one plane of faces, and what is whole: the pressure's levels of
+    # fewer than 20,000 cells, less than 128 bytes each, and 5 bytes per cell for the connected regions of gas
+    cat >tank.toml <<-END
+	solver = "two_phase"
+	dim = 3
+	grid = { cells = [24, 24, 256], size = [0.24, 0.24, 2.56] }
+	time = { end = 0.001, dt = 0.001 }
+	fluid = { density = 1000.0 }
+	gas = { density = 1.2 }
+	liquid = [ { shape = "box", min = [0.0, 0.0, 0.0], max = [0.24, 0.12, 2.56] } ]
+	effects = { gravity = { g = [0.5, -9.81, 1.0] }, surface_tension = { sigma = 0.07 } }
+	output = { every = 1.0 }
+	END
+    ends 0 "$weir" run tank.toml --checkpoint-every 1000 --quiet --threads 1 --out tank
+    for ranks in $numbers; do shared tank.toml $((24 * 24)) $((20000 * 8 / 7 * 128 + 5 * 24 * 24 * 256)) "$ranks" tank "tank-$ranks"; done
     poisoned 3 1 "$gas"
     poisoned 3 1 "$gas_deep" $even
     poisoned 4 1 "$gas_deep" # at most 8 planes each, and heights read 5
@@ -882,6 +897,7 @@ ends)
     refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$tall" --set effects.hand={}
     refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$water" --set effects.hand={}
     refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$drops" --set effects.hand={}
+    refused "effects.viscosity: viscosity of two phases is not supported in parallel (MPI); run in one process" "$gas" --set effects.viscosity={}
     refused "scheme.backend: this backend is not supported in parallel (MPI); run in one process" "$drops" --set scheme.backend=reference
     refused "floats: floating objects are not supported in parallel (MPI); run in one process" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
     refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$shallow" --set effects.hand={}

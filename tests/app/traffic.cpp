@@ -149,6 +149,16 @@ TEST("mac_water: viscous liquid sends what was counted, with its iterations") {
         {2, 3}, {1e-4, 3, 6});
 }
 
+TEST("two_phase: liquid and gas at rest send what was counted, with a shared pressure and with one that every rank solves") {
+    const std::string layers =
+        "solver = \"two_phase\"\ntime = { end = 0.01, max_dt = 1e-4 }\nfluid = { density = 1000.0 }\ngas = { density = 1.2 }\n"
+        "effects = { gravity = { g = [0.0, -9.81, 0.0] }, surface_tension = { sigma = 0.07 } }\n"
+        "scheme.poisson = { fixed = true, max_iterations = 2 }\noutput = { every = 1.0, compression = \"none\" }\n"
+        "dim = 3\nliquid = [ { shape = \"box\", min = [0.0, 0.0, 0.0], max = [0.32, 0.12, 0.4] } ]\n";
+    expect_as_counted(layers + "grid = { cells = [32, 24, 40], size = [0.32, 0.24, 0.4] }\n", {2, 3}, {1e-4, 3, 6});
+    expect_as_counted(layers + "grid = { cells = [16, 12, 20], size = [0.32, 0.24, 0.4] }\n", {3}, {1e-4, 3, 6});
+}
+
 TEST("solids that move, an emitter, a sink and probes send what was counted") {
     expect_as_counted(
         pool +
