@@ -1,4 +1,4 @@
-// Liquid and gas over ranks: every plane has the bits of one process, and no pass reads a ghost plane that was not filled.
+// Liquid and gas in parallel: every plane has the bits of one process, and no pass reads a ghost plane that was not filled.
 #include "parallel/partition.hpp"
 #include "support.hpp"
 #include "support/forked_ranks.hpp"
@@ -83,11 +83,11 @@ effects = {{ surface_tension = {{ sigma = 10.0 }} }}
                        test::list({"0.3", "0.7", "0.5"}, D));
 }
 
-TEST_IN_2D_AND_3D("two_phase over ranks: a flow past a ball through open sides has the bits of one process") {
+TEST_IN_2D_AND_3D("two_phase in parallel: a flow past a ball through open sides has the bits of one process") {
     for (const int ranks : {2, 3, 4}) expect_as_one_process<D>(flow_past_a_ball<D>(), ranks, D == 2 ? 12 : 3);
 }
 
-TEST_IN_2D_AND_3D("two_phase over ranks: a drop with tension across a periodic end has the bits of one process") {
+TEST_IN_2D_AND_3D("two_phase in parallel: a drop with tension across a periodic end has the bits of one process") {
     for (const int ranks : {2, 3, 4}) expect_as_one_process<D>(drop_on_the_seam<D>(), ranks, D == 2 ? 12 : 3);
 }
 
