@@ -84,6 +84,7 @@ Key side_keys() {
 
 void check_parallel(const scene::Scene& scene) {
     if (scene.effect("viscosity")) scene::one_process_only(scene, "effects.viscosity", "viscosity of two phases is");
+    scene::refuse_brush(scene);
 }
 
 }  // namespace

@@ -427,6 +427,7 @@ two_phase) # liquid and gas
     compare blown "2 1,4 1" "$gas_deep" $even --set "$blown" --set 'effects={gravity={g=[0.0,-9.81,1.0]}}' \
         --set 'solids=[{shape="sphere",centre=[0.3,0.2,0.34],radius=0.12}]' "${probes_gas[@]}"
     holds_own blown-4
+    compare rolling "2 1,3 1" "$gas" $closed --set 'effects={gravity={g=[0.0,-9.81]},rotating_frame={centre=[0.3,0.1],amplitude=0.3,period=0.4}}'
     compare alone "3 1" "$gas" --set scheme.poisson.method=cg_mic0
     holds_whole alone-3
     keep_four=yes compare thin "4 1" "$gas" $closed --set grid.cells=[24,5] --set grid.size=[0.9,0.2] --set "$falling"
@@ -897,6 +898,7 @@ ends)
     refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$tall" --set effects.hand={}
     refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$water" --set effects.hand={}
     refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$drops" --set effects.hand={}
+    refused "effects.hand: interactive forcing is not supported in parallel (MPI); run in one process" "$gas" --set effects.hand={}
     refused "effects.viscosity: viscosity of two phases is not supported in parallel (MPI); run in one process" "$gas" --set effects.viscosity={}
     refused "scheme.backend: this backend is not supported in parallel (MPI); run in one process" "$drops" --set scheme.backend=reference
     refused "floats: floating objects are not supported in parallel (MPI); run in one process" "$columns" --set 'floats=[{size=[0.5,0.2,0.5],at=[1.0,0.3,1.0]}]'
