@@ -54,12 +54,13 @@ private:
         Padded<D>& f;                // and now
         Padded<D>* q;                // velocity component in the volumes; nullptr: only liquid is transported
         Densities rho;
-        /// C of the lower face along axis d: the mean over the two cells of a face's volume.
-        real courant(int d, const Index<D>& I) const {
-            const Padded<D>& u = motion.flow[d];
-            return per_cell[d] * (component < 0 ? u(I) : 0.5 * (u(I - e<D>(component)) + u(I)));
-        }
-        real dilation(int d, const Index<D>& I) const { return courant(d, I + e<D>(d)) - courant(d, I); }
+        Grid<real, D>& to;  // the result: velocity component, or fractions of cells
+        /// C of the lower faces of a row of volumes along axis d: the mean over the two cells of a face's volume.
+        void find_courants(int d, const Index<D>& first, int count, real* C) const;
+        /// Adds sign dC of a row of volumes.
+        void add_dilation(int d, const Index<D>& first, int count, real sign, real* sum) const;
+        /// c dC of the sweep of this number, without c; in the last one what takes that of the earlier ones back.
+        void find_dilation(int number, const Index<D>& first, int count, real* dilation) const;
     };
     /// Returns the liquid that crossed open sides and inflows.
     real run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
