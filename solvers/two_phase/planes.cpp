@@ -173,15 +173,20 @@ real fraction_of_box(const Plane<D>& plane, const Vec<D>& lo, const Vec<D>& hi) 
 }
 
 template <int D>
-real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end, real width) {
-    if (is_empty(*f)) return 0;
-    if (is_full(*f)) return 1;
+real fraction_of_slab(const Plane<D>& plane, int axis, int end, real width) {
     Vec<D> lo{}, hi = Vec<D>::constant(1);
     if (end == 0)
         hi[axis] = width;
     else
         lo[axis] = 1 - width;
-    return fraction_of_box(plane_at<D>(f, stride), lo, hi);
+    return fraction_of_box(plane, lo, hi);
+}
+
+template <int D>
+real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end, real width) {
+    if (is_empty(*f)) return 0;
+    if (is_full(*f)) return 1;
+    return fraction_of_slab(plane_at<D>(f, stride), axis, end, width);
 }
 
 #define WEIR_INSTANTIATE(D)                                                       \
@@ -190,6 +195,7 @@ real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end
     template Vec<D> normal_at<D>(const real*, const Strides<D>&);                 \
     template Plane<D> plane_at<D>(const real*, const Strides<D>&);                \
     template real fraction_of_box(const Plane<D>&, const Vec<D>&, const Vec<D>&); \
+    template real fraction_of_slab(const Plane<D>&, int, int, real);              \
     template real fraction_of_slab<D>(const real*, const Strides<D>&, int, int, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
