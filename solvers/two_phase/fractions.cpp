@@ -119,9 +119,8 @@ struct Dust {
         real closest = takes_below;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!takes_part(K)) continue;
-            const real distance = std::abs(before(K) - 0.5);
-            if (distance < closest) closest = distance, J = K;
+            const real distance = std::abs(before(K) - 0.5);  // ghosts have the fractions of their images
+            if (distance < closest && takes_part(K)) closest = distance, J = K;
         }
         return closest < takes_below;
     }
@@ -134,9 +133,8 @@ struct Dust {
         real sum = 0;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!takes_part(K)) continue;
             const real given = dust_of(before(K));
-            if (given != 0 && receiver(K, J) && J == I) sum += given;
+            if (given != 0 && takes_part(K) && receiver(K, J) && J == I) sum += given;
         }
         return sum;
     }

@@ -24,10 +24,9 @@ real reflect(Vec<D>& m) {
 
 template <int D>
 Sorted sorted(const Vec<D>& m) {
-    Sorted s{};
-    for (int d = 0; d < D; ++d) s[static_cast<std::size_t>(3 - D + d)] = m[d];
-    std::sort(s.begin(), s.end());
-    return s;
+    const auto [low, high] = std::minmax(m[D - 2], m[D - 1]);
+    if constexpr (D == 2) return {0, low, high};
+    return {std::min(m[0], low), std::max(low, std::min(m[0], high)), std::max(m[0], high)};
 }
 
 /// (x³ − (x − m1)³)/m1 for the positive parts: the cubes of inclusion and exclusion of corners, divided by m1 without cancellation.
@@ -108,17 +107,11 @@ Vec<D> youngs_normal(const real* f, const Strides<D>& stride) {
     return m;
 }
 
-/// Returns m / Σ|m|, and the largest |component| of the result; a zero vector stays zero.
 template <int D>
-real normalize(Vec<D>& m) {
-    real sum = 0, largest = 0;
+real sum_of_magnitudes(const Vec<D>& m) {
+    real sum = 0;
     for (int d = 0; d < D; ++d) sum += std::abs(m[d]);
-    if (sum == 0) return infinity;
-    for (int d = 0; d < D; ++d) {
-        m[d] /= sum;
-        largest = std::max(largest, std::abs(m[d]));
-    }
-    return largest;
+    return sum;
 }
 
 }  // namespace
@@ -147,16 +140,19 @@ real plane_constant(Vec<D> m, real fraction) {
 /// Of the centred normals the one that is steepest along its own axis; Youngs' where that one is less aligned with an axis.
 template <int D>
 Vec<D> normal_at(const real* f, const Strides<D>& stride) {
-    Vec<D> youngs = youngs_normal<D>(f, stride), best{};
-    real steepest = 0;
+    const Vec<D> youngs = youngs_normal<D>(f, stride);
+    Vec<D> best{};
+    real sum = 0, steepest = 0;
     for (int d = 0; d < D; ++d) {
-        Vec<D> m = centred_normal<D>(f, stride, d, youngs[d] > 0 ? 1 : -1);
-        normalize(m);
-        if (std::abs(m[d]) <= steepest) continue;
-        steepest = std::abs(m[d]);
-        best = m;
+        const Vec<D> m = centred_normal<D>(f, stride, d, youngs[d] > 0 ? 1 : -1);
+        const real all = sum_of_magnitudes(m), along = 1 / all;
+        if (along <= steepest) continue;
+        steepest = along, sum = all, best = m;
     }
-    return steepest > normalize(youngs) ? youngs : best;
+    real largest = 0;
+    for (int d = 0; d < D; ++d) largest = std::max(largest, std::abs(youngs[d]));
+    const real of_youngs = sum_of_magnitudes(youngs);
+    return of_youngs > 0 && steepest > largest / of_youngs ? youngs / of_youngs : best / sum;
 }
 
 template <int D>
