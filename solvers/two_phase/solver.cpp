@@ -59,7 +59,7 @@ void TwoPhase<D>::transport(real dt) {
     }
     const auto timed = passes_.time("transport liquid");
     Grid<real, D>& f = state_.fields[0].values;
-    poured_ += state_.u.cell_volume() * transport_.advect_fraction(motion, f);
+    poured_ += state_.u.cell_volume() * transport_.advect_fraction(motion, fraction_ghosts_, f);
     ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
     hand_on_dust(fraction_ghosts_, around_, state_.cells, f);
     if (solids_.any()) {

@@ -20,7 +20,6 @@ Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& en
     : spacing_(state.u.h),
       sides_(state.sides),
       cell_ghosts_(state.sides, -1, entering),
-      cell_fraction_(state.extent()),
       velocity_(state.u),
       liquid_flux_(Extent<D>(state.u.cells + Index<D>::constant(2))),
       momentum_flux_(liquid_flux_.extent()) {
@@ -79,9 +78,8 @@ Vec<D> Transport<D>::per_cell(real dt) const {
 }
 
 template <int D>
-real Transport<D>::advect_fraction(const Motion<D>& motion, Grid<real, D>& f) {
-    cell_ghosts_.fill_all(cell_fraction_, f);
-    return run_sweeps({-1, motion, per_cell(motion.dt), f, cell_fraction_, nullptr, {}, f}, cell_ghosts_, nullptr);
+real Transport<D>::advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f) {
+    return run_sweeps({-1, motion, per_cell(motion.dt), f, padded, nullptr, {}, f}, cell_ghosts_, nullptr);
 }
 
 template <int D>
@@ -103,7 +101,7 @@ real Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_frac
         }
         const int d = v.motion.order[static_cast<std::size_t>(number)];
         find_fluxes(v, d);
-        if (v.component < 0) entered += inflow(d);
+        if (v.component < 0) entered += inflow(v.f.extent(), d);
         add_fluxes(v, number);
     }
     return entered;
@@ -111,14 +109,14 @@ real Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_frac
 
 /// Of the fluxes of a sweep over cells, through the two sides of its axis.
 template <int D>
-real Transport<D>::inflow(int d) const {
+real Transport<D>::inflow(const Extent<D>& cells, int d) const {
     real sum = 0;
     for (const int end : {0, 1}) {
         const auto kind = sides_.side(d, end).kind;
         if (kind != geometry::SideKind::outflow && kind != geometry::SideKind::inflow) continue;
-        Extent<D> plane(cell_fraction_.extent());
+        Extent<D> plane(cells);
         plane[d] = 1;
-        const int at = end == 0 ? 0 : cell_fraction_.extent()[d];
+        const int at = end == 0 ? 0 : cells[d];
         const real through = sum_over(plane, [&](Index<D> I) {
             I[d] = at;
             return liquid_flux_(I);
@@ -208,7 +206,7 @@ void Transport<D>::add_fluxes(const Volumes& v, int number) {
 
 template <int D>
 std::size_t Transport<D>::bytes() const {
-    std::size_t total = cell_fraction_.bytes() + liquid_flux_.bytes() + momentum_flux_.bytes();
+    std::size_t total = liquid_flux_.bytes() + momentum_flux_.bytes();
     for (int a = 0; a < D; ++a) total += face_fraction_[static_cast<std::size_t>(a)].bytes() + velocity_[a].bytes();
     return total;
 }
