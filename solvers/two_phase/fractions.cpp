@@ -1,5 +1,7 @@
 #include "two_phase/fractions.hpp"
 
+#include "mac/grid/rows.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -88,16 +90,6 @@ bool Around<D>::wrap(Index<D>& I) const {
     return true;
 }
 
-template <int D>
-void find_face_fractions(const Padded<D>& cells, int axis, Grid<real, D>& faces) {
-    const Strides<D> stride = strides_of(cells);
-    const std::ptrdiff_t below = stride[static_cast<std::size_t>(axis)];
-    for_each_cell(faces.extent(), [&](const Index<D>& I) {
-        const real* f = cells.at(I);
-        faces(I) = 0.5 * (fraction_of_slab<D>(f - below, stride, axis, 1, 0.5) + fraction_of_slab<D>(f, stride, axis, 0, 0.5));
-    });
-}
-
 namespace {
 
 /// The offsets of the 3^D − 1 neighbours of a cell, in the order of their indices.
@@ -129,9 +121,8 @@ struct Dust {
         real closest = takes_below;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!takes_part(K)) continue;
-            const real distance = std::abs(before(K) - 0.5);
-            if (distance < closest) closest = distance, J = K;
+            const real distance = std::abs(before(K) - 0.5);  // ghosts have the fractions of their images
+            if (distance < closest && takes_part(K)) closest = distance, J = K;
         }
         return closest < takes_below;
     }
@@ -144,13 +135,45 @@ struct Dust {
         real sum = 0;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
-            if (!takes_part(K)) continue;
             const real given = dust_of(before(K));
-            if (given != 0 && receiver(K, J) && J == I) sum += given;
+            if (given != 0 && takes_part(K) && receiver(K, J) && J == I) sum += given;
         }
         return sum;
     }
 };
+
+/// The distance from one half of the closest of cell i − 1 and the 3^(D − 1) cells around it across the row.
+template <int D>
+void find_closest(const real* f, const Strides<D>& stride, int count, real* closest) {
+    std::fill_n(closest, count + 2, infinity);
+    for (int k = 0; k < block_cells<D>; k += 3) {
+        const Index<D> by = block_offset<D>(k);
+        const real* row = f - 1;
+        for (int d = 1; d < D; ++d) row += by[d] * stride[static_cast<std::size_t>(d)];
+#pragma omp simd
+        for (int i = 0; i < count + 2; ++i) {
+            const real distance = std::abs(row[i] - 0.5);
+            closest[i] = distance < closest[i] ? distance : closest[i];
+        }
+    }
+}
+
+/// Marks the cells of a row whose dust may move: they take or have some, and a cell around takes some. Returns whether there are any.
+template <int D>
+bool mark_candidates(const real* f, const Strides<D>& stride, int count, real* mark) {
+    alignas(64) real closest[row_block + 2];
+    find_closest<D>(f, stride, count, closest);
+    real most = 0;
+#pragma omp simd reduction(max : most)
+    for (int i = 0; i < count; ++i) {
+        const real side = closest[i] < closest[i + 2] ? closest[i] : closest[i + 2];
+        const real near = side < closest[i + 1] ? side : closest[i + 1];
+        const bool gives = (f[i] < dust && f[i] != 0) || (f[i] > 1 - dust && f[i] != 1);
+        mark[i] = near < takes_below && (gives || std::abs(f[i] - 0.5) < takes_below) ? 1 : 0;
+        most = most < mark[i] ? mark[i] : most;
+    }
+    return most > 0;
+}
 
 }  // namespace
 
@@ -158,8 +181,13 @@ template <int D>
 void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f) {
     static const std::vector<Index<D>> offsets = neighbours<D>();
     const Dust<D> all{before, around, cells, offsets};
-    for_each_cell(f.extent(), [&](const Index<D>& I) {
-        if (cells(I) != poisson::Cell::solid) f(I) += all.change(I);
+    const Strides<D> stride = strides_of(before);
+    for_each_row(Index<D>{}, f.extent(), [&](const Index<D>& first, int count) {
+        alignas(64) real mark[row_block];
+        if (!mark_candidates<D>(before.at(first), stride, count, mark)) return;
+        Index<D> I = first;
+        for (int i = 0; i < count; ++i, ++I[0])
+            if (mark[i] > 0 && cells(I) != poisson::Cell::solid) f(I) += all.change(I);
     });
 }
 
@@ -228,7 +256,6 @@ void start_fractions(const geometry::Shape<D>& liquid, const MacVelocity<D>& gri
 #define WEIR_INSTANTIATE(D)                                                                                        \
     template class FractionGhosts<D>;                                                                              \
     template class Around<D>;                                                                                      \
-    template void find_face_fractions(const Padded<D>&, int, Grid<real, D>&);                                      \
     template void hand_on_dust(const Padded<D>&, const Around<D>&, const Grid<poisson::Cell, D>&, Grid<real, D>&); \
     template void start_fractions(const geometry::Shape<D>&, const MacVelocity<D>&, Grid<real, D>&);
 WEIR_INSTANTIATE(2)

@@ -76,10 +76,10 @@ private:
     std::array<bool, D> periodic_{};
 };
 
-/// The fraction of the control volume of every face along `axis`: ½ upper half of the cell below + ½ lower half of the cell above.
-/// `cells` needs two layers of ghosts.
+/// The fraction of the control volume of every face: ½ upper half of the cell below + ½ lower half of the cell above. `cells` needs two
+/// layers of ghosts; `scratch`: of the extents of `faces`.
 template <int D>
-void find_face_fractions(const Padded<D>& cells, int axis, Grid<real, D>& faces);
+void find_face_fractions(const Padded<D>& cells, FaceFractions<D>& faces, FaceFractions<D>& scratch);
 
 /// Fractions within this distance of 0 or 1 are handed to the neighbour that is closest to one half, so that columns of cells end.
 inline constexpr real dust = 1e-9;

@@ -24,10 +24,9 @@ real reflect(Vec<D>& m) {
 
 template <int D>
 Sorted sorted(const Vec<D>& m) {
-    Sorted s{};
-    for (int d = 0; d < D; ++d) s[static_cast<std::size_t>(3 - D + d)] = m[d];
-    std::sort(s.begin(), s.end());
-    return s;
+    const auto [low, high] = std::minmax(m[D - 2], m[D - 1]);
+    if constexpr (D == 2) return {0, low, high};
+    return {std::min(m[0], low), std::max(low, std::min(m[0], high)), std::max(m[0], high)};
 }
 
 /// (x³ − (x − m1)³)/m1 for the positive parts: the cubes of inclusion and exclusion of corners, divided by m1 without cancellation.
@@ -108,17 +107,11 @@ Vec<D> youngs_normal(const real* f, const Strides<D>& stride) {
     return m;
 }
 
-/// Returns m / Σ|m|, and the largest |component| of the result; a zero vector stays zero.
 template <int D>
-real normalize(Vec<D>& m) {
-    real sum = 0, largest = 0;
+real sum_of_magnitudes(const Vec<D>& m) {
+    real sum = 0;
     for (int d = 0; d < D; ++d) sum += std::abs(m[d]);
-    if (sum == 0) return infinity;
-    for (int d = 0; d < D; ++d) {
-        m[d] /= sum;
-        largest = std::max(largest, std::abs(m[d]));
-    }
-    return largest;
+    return sum;
 }
 
 }  // namespace
@@ -147,16 +140,19 @@ real plane_constant(Vec<D> m, real fraction) {
 /// Of the centred normals the one that is steepest along its own axis; Youngs' where that one is less aligned with an axis.
 template <int D>
 Vec<D> normal_at(const real* f, const Strides<D>& stride) {
-    Vec<D> youngs = youngs_normal<D>(f, stride), best{};
-    real steepest = 0;
+    const Vec<D> youngs = youngs_normal<D>(f, stride);
+    Vec<D> best{};
+    real sum = 0, steepest = 0;
     for (int d = 0; d < D; ++d) {
-        Vec<D> m = centred_normal<D>(f, stride, d, youngs[d] > 0 ? 1 : -1);
-        normalize(m);
-        if (std::abs(m[d]) <= steepest) continue;
-        steepest = std::abs(m[d]);
-        best = m;
+        const Vec<D> m = centred_normal<D>(f, stride, d, youngs[d] > 0 ? 1 : -1);
+        const real all = sum_of_magnitudes(m), along = 1 / all;
+        if (along <= steepest) continue;
+        steepest = along, sum = all, best = m;
     }
-    return steepest > normalize(youngs) ? youngs : best;
+    real largest = 0;
+    for (int d = 0; d < D; ++d) largest = std::max(largest, std::abs(youngs[d]));
+    const real of_youngs = sum_of_magnitudes(youngs);
+    return of_youngs > 0 && steepest > largest / of_youngs ? youngs / of_youngs : best / sum;
 }
 
 template <int D>
@@ -173,15 +169,20 @@ real fraction_of_box(const Plane<D>& plane, const Vec<D>& lo, const Vec<D>& hi) 
 }
 
 template <int D>
-real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end, real width) {
-    if (is_empty(*f)) return 0;
-    if (is_full(*f)) return 1;
+real fraction_of_slab(const Plane<D>& plane, int axis, int end, real width) {
     Vec<D> lo{}, hi = Vec<D>::constant(1);
     if (end == 0)
         hi[axis] = width;
     else
         lo[axis] = 1 - width;
-    return fraction_of_box(plane_at<D>(f, stride), lo, hi);
+    return fraction_of_box(plane, lo, hi);
+}
+
+template <int D>
+real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end, real width) {
+    if (is_empty(*f)) return 0;
+    if (is_full(*f)) return 1;
+    return fraction_of_slab(plane_at<D>(f, stride), axis, end, width);
 }
 
 #define WEIR_INSTANTIATE(D)                                                       \
@@ -190,6 +191,7 @@ real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end
     template Vec<D> normal_at<D>(const real*, const Strides<D>&);                 \
     template Plane<D> plane_at<D>(const real*, const Strides<D>&);                \
     template real fraction_of_box(const Plane<D>&, const Vec<D>&, const Vec<D>&); \
+    template real fraction_of_slab(const Plane<D>&, int, int, real);              \
     template real fraction_of_slab<D>(const real*, const Strides<D>&, int, int, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

@@ -45,7 +45,11 @@ Plane<D> plane_at(const real* f, const Strides<D>& stride);
 template <int D>
 real fraction_of_box(const Plane<D>& plane, const Vec<D>& lo, const Vec<D>& hi);
 
-/// The same for the slab of width `width` at the lower (end 0) or upper (end 1) side of the cell along an axis, for any cell.
+/// The same for the slab of width `width` at the lower (end 0) or upper (end 1) side of the cell along an axis.
+template <int D>
+real fraction_of_slab(const Plane<D>& plane, int axis, int end, real width);
+
+/// The same for any cell, with or without a plane.
 template <int D>
 real fraction_of_slab(const real* f, const Strides<D>& stride, int axis, int end, real width);
 

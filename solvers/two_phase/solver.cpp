@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mac/grid/inflow.hpp"
+#include "mac/grid/rows.hpp"
 #include "two_phase/tension.hpp"
 
 #include <algorithm>
@@ -59,7 +60,7 @@ void TwoPhase<D>::transport(real dt) {
     }
     const auto timed = passes_.time("transport liquid");
     Grid<real, D>& f = state_.fields[0].values;
-    poured_ += state_.u.cell_volume() * transport_.advect_fraction(motion, f);
+    poured_ += state_.u.cell_volume() * transport_.advect_fraction(motion, fraction_ghosts_, f);
     ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
     hand_on_dust(fraction_ghosts_, around_, state_.cells, f);
     if (solids_.any()) {
@@ -74,17 +75,29 @@ template <int D>
 void TwoPhase<D>::find_face_densities() {
     const auto timed = passes_.time("densities");
     ghosts_of_fraction_.fill_all(fraction_ghosts_, fraction());
+    find_face_fractions<D>(fraction_ghosts_, faces_, state_.mobility);
+    const Densities rho = options_.rho;
     for (int a = 0; a < D; ++a) {
         const auto at = static_cast<std::size_t>(a);
-        find_face_fractions(fraction_ghosts_, a, faces_[at]);
-        const auto mean = [&](const Index<D>& I) {
-            return std::clamp(0.5 * (fraction_ghosts_(I - e<D>(a)) + fraction_ghosts_(I)), 0.0, 1.0);
-        };
-        for_each_cell(faces_[at].extent(), [&](const Index<D>& I) {
-            state_.mobility[at](I) = state_.rho / options_.rho.of(experiment_.mean_density ? mean(I) : faces_[at](I));
+        const real scale = state_.rho;
+        for_each_row(Index<D>{}, faces_[at].extent(), [&](const Index<D>& first, int count) {
+            const real* f = &faces_[at](first);
+            real* mobility = &state_.mobility[at](first);
+#pragma omp simd
+            for (int i = 0; i < count; ++i) mobility[i] = scale / rho.of(f[i]);
         });
     }
+    if (experiment_.mean_density) use_mean_densities();
     exchange_densities();
+}
+
+template <int D>
+void TwoPhase<D>::use_mean_densities() {
+    for (int a = 0; a < D; ++a)
+        for_each_cell(faces_[static_cast<std::size_t>(a)].extent(), [&](const Index<D>& I) {
+            const real mean = std::clamp(0.5 * (fraction_ghosts_(I - e<D>(a)) + fraction_ghosts_(I)), 0.0, 1.0);
+            state_.mobility[static_cast<std::size_t>(a)](I) = state_.rho / options_.rho.of(mean);
+        });
 }
 
 template <int D>
@@ -121,14 +134,34 @@ const poisson::Report& TwoPhase<D>::project(real dt) {
 /// Weymouth & Yue's measure of a step: the cells that leave a cell along all axes together.
 template <int D>
 void TwoPhase<D>::find_rate() {
-    const auto leaving = [&](int a, const Index<D>& I) {
-        return std::abs(solids_.any() ? state_.solid.open[static_cast<std::size_t>(a)](I) * state_.u[a](I) : state_.u[a](I));
-    };
-    rate_ = max_over(state_.extent(), [&](const Index<D>& I) {
-        real sum = 0;
-        for (int a = 0; a < D; ++a) sum += larger_or_nan(leaving(a, I), leaving(a, I + e<D>(a))) / state_.u.h[a];
-        return sum;
+    rate_ = max_over(rows_of<D>(state_.extent()), [&](const Index<D>& row) {
+        real most = 0;
+        for_each_block(row, state_.u.cells[0], [&](const Index<D>& first, int count) {
+            alignas(64) real sum[row_block];
+            std::fill_n(sum, count, 0.0);
+            for (int a = 0; a < D; ++a) add_rate(a, first, count, sum);
+            most = larger_or_nan(most, largest_magnitude(sum, static_cast<std::size_t>(count)));
+        });
+        return most;
     });
+}
+
+/// The larger |u|/h of the two faces of each cell along axis a. NaN if either is.
+template <int D>
+void TwoPhase<D>::add_rate(int a, const Index<D>& first, int count, real* sum) const {
+    const auto& u = state_.u[a];
+    const auto add = [&](auto&& speed) {
+        const std::ptrdiff_t up = u.stride(a);
+        const real h = state_.u.h[a];
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const real lower = std::abs(speed(i)), upper = std::abs(speed(i + up));
+            sum[i] += (lower >= upper ? lower : upper + 0 * lower) / h;
+        }
+    };
+    const real* q = &u(first);
+    if (!solids_.any()) return add([q](std::ptrdiff_t i) { return q[i]; });
+    add([q, open = &state_.solid.open[static_cast<std::size_t>(a)](first)](std::ptrdiff_t i) { return open[i] * q[i]; });
 }
 
 template <int D>

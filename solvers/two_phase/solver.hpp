@@ -93,10 +93,12 @@ private:
     Motion<D> motion(real dt);
     void transport(real dt);
     void find_face_densities();
+    void use_mean_densities();
     void apply_viscosity(real dt);
     void apply_tension(real dt);
     const poisson::Report& project(real dt);
     void find_rate();
+    void add_rate(int a, const Index<D>& first, int count, real* sum) const;
     void check() const;
     void exchange_densities();  // in parallel (ranks.cpp)
     void update_distance() const;

@@ -1,5 +1,7 @@
 #include "two_phase/transport.hpp"
 
+#include "mac/grid/rows.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +20,6 @@ Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& en
     : spacing_(state.u.h),
       sides_(state.sides),
       cell_ghosts_(state.sides, -1, entering),
-      cell_fraction_(state.extent()),
       velocity_(state.u),
       liquid_flux_(state.u.cells + Index<D>::constant(2), 0, 1),
       momentum_flux_(liquid_flux_) {
@@ -30,22 +31,41 @@ Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& en
 
 namespace {
 
-template <int D>
-void copy(const Padded<D>& from, Grid<real, D>& to) {
-    for_each_cell(to.extent(), [&](const Index<D>& I) { to(I) = from(I); });
-}
-
 /// Beyond this ratio between the densities of neighbouring volumes, slopes across them are not used: a gas volume beside a liquid one would
 /// receive a value extrapolated from the other phase.
 constexpr real similar = 0.1;
 
-bool are_similar(real a, real b, real c) { return std::min({a, b, c}) >= similar * std::max({a, b, c}); }
+/// F through a row of faces with pure donors. Returns whether any donor is mixed. `f`: of the volumes above the faces.
+bool find_pure_fluxes(const real* f, std::ptrdiff_t by, const real* C, int count, real* F) {
+    real mixed = 0;
+#pragma omp simd reduction(+ : mixed)
+    for (int i = 0; i < count; ++i) {
+        const real below = f[i - by], above = f[i], donor = C[i] > 0 ? below : above;
+        const real part = donor >= 1 - pure ? 1 : 0;
+        F[i] = C[i] == 0 ? 0 : C[i] * part;
+        mixed += part == 0 && !(donor <= pure) ? 1 : 0;
+    }
+    return mixed > 0;
+}
 
-/// The velocity that leaves a donor volume during a step: limited linear reconstruction (van Leer 1977, harmonic).
-real leaving(real behind, real donor, real ahead, real courant) {
-    const real a = donor - behind, b = ahead - donor;
-    const real slope = a * b > 0 ? 2 * a * b / (a + b) : 0;
-    return donor + 0.5 * (1 - courant) * slope;
+/// The momentum that the mass ρ_l F + ρ_g (C − F) carries through a row of faces: by the velocity that leaves the donor during the step,
+/// from a limited linear reconstruction (van Leer 1977, harmonic) among similar volumes.
+void find_momentum_fluxes(const Densities& rho, const real* f, const real* q, std::ptrdiff_t by, const real* C, const real* F, int count,
+                          real* momentum) {
+#pragma omp simd
+    for (int i = 0; i < count; ++i) {
+        const real q0 = q[i - 2 * by], q1 = q[i - by], q2 = q[i], q3 = q[i + by];
+        const real f0 = f[i - 2 * by], f1 = f[i - by], f2 = f[i], f3 = f[i + by];
+        const bool upwards = C[i] > 0;
+        const real donor = upwards ? q1 : q2, a = donor - (upwards ? q0 : q3), b = (upwards ? q2 : q1) - donor;
+        const real r0 = rho.of(upwards ? f0 : f3), r1 = rho.of(f1), r2 = rho.of(f2);
+        const real lower = r1 < r2 ? r1 : r2, higher = r1 < r2 ? r2 : r1;
+        const real least = r0 < lower ? r0 : lower, most = r0 < higher ? higher : r0;
+        const bool sloped = a * b > 0;
+        const real slope = (sloped ? 2 * a * b : 0) / (sloped ? a + b : 1);
+        const real leaving = donor + 0.5 * (1 - std::abs(C[i])) * slope;
+        momentum[i] = (rho.liquid * F[i] + rho.gas * (C[i] - F[i])) * (least >= similar * most ? leaving : donor);
+    }
 }
 
 }  // namespace
@@ -58,11 +78,8 @@ Vec<D> Transport<D>::per_cell(real dt) const {
 }
 
 template <int D>
-real Transport<D>::advect_fraction(const Motion<D>& motion, Grid<real, D>& f) {
-    cell_ghosts_.fill_all(cell_fraction_, f);
-    const real entered = run_sweeps({-1, motion, per_cell(motion.dt), f, cell_fraction_, nullptr, {}}, cell_ghosts_, nullptr);
-    copy(cell_fraction_, f);
-    return entered;
+real Transport<D>::advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f) {
+    return run_sweeps({-1, motion, per_cell(motion.dt), f, padded, nullptr, {}, f}, cell_ghosts_, nullptr);
 }
 
 template <int D>
@@ -71,8 +88,7 @@ void Transport<D>::advect_momentum(int a, const Motion<D>& motion, const Grid<re
     const auto at = static_cast<std::size_t>(a);
     face_ghosts_[at].fill_all(face_fraction_[at], fractions);
     fill(velocity_[a], to, carried);
-    run_sweeps({a, motion, per_cell(motion.dt), fractions, face_fraction_[at], &velocity_[a], rho}, face_ghosts_[at], &carried);
-    copy(velocity_[a], to);
+    run_sweeps({a, motion, per_cell(motion.dt), fractions, face_fraction_[at], &velocity_[a], rho, to}, face_ghosts_[at], &carried);
 }
 
 template <int D>
@@ -85,7 +101,7 @@ real Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_frac
         }
         const int d = v.motion.order[static_cast<std::size_t>(number)];
         find_fluxes(v, d);
-        if (v.component < 0) entered += inflow(d);
+        if (v.component < 0) entered += inflow(v.f.extent(), d);
         add_fluxes(v, number);
     }
     return entered;
@@ -93,12 +109,11 @@ real Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_frac
 
 /// Of the fluxes of a sweep over cells, through the two sides of its axis.
 template <int D>
-real Transport<D>::inflow(int d) const {
+real Transport<D>::inflow(const Extent<D>& cells, int d) const {
     real sum = 0;
     for (const int end : {0, 1}) {
         const auto kind = sides_.side(d, end).kind;
         if (kind != geometry::SideKind::outflow && kind != geometry::SideKind::inflow) continue;
-        const Extent<D>& cells = cell_fraction_.extent();
         Extent<D> plane = d == D - 1 ? replicated<D>(cells) : cells;
         plane[d] = 1;
         const int at = end == 0 ? 0 : cells[d];
@@ -114,52 +129,89 @@ real Transport<D>::inflow(int d) const {
     return sum;
 }
 
-/// Through the lower face of every volume along axis d: F, and the momentum that the mass ρ_l F + ρ_g (C − F) carries.
+template <int D>
+void Transport<D>::Volumes::find_courants(int d, const Index<D>& first, int count, real* C) const {
+    const real *u = motion.flow[d].at(first), ratio = per_cell[d];
+    if (component < 0) {
+        for (int i = 0; i < count; ++i) C[i] = ratio * u[i];
+        return;
+    }
+    const real* below = motion.flow[d].at(first - e<D>(component));
+#pragma omp simd
+    for (int i = 0; i < count; ++i) C[i] = ratio * (0.5 * (below[i] + u[i]));
+}
+
+template <int D>
+void Transport<D>::Volumes::add_dilation(int d, const Index<D>& first, int count, real sign, real* sum) const {
+    alignas(64) real lower[row_block], upper[row_block];
+    find_courants(d, first, count, lower);
+    find_courants(d, first + e<D>(d), count, upper);
+#pragma omp simd
+    for (int i = 0; i < count; ++i) sum[i] += sign * (upper[i] - lower[i]);
+}
+
+template <int D>
+void Transport<D>::Volumes::find_dilation(int number, const Index<D>& first, int count, real* dilation) const {
+    std::fill_n(dilation, count, 0.0);
+    const auto axis = [&](int k) { return motion.order[static_cast<std::size_t>(k)]; };
+    if (number + 1 < D) return add_dilation(axis(number), first, count, 1, dilation);
+    for (int k = 0; k < number; ++k) add_dilation(axis(k), first, count, -1, dilation);
+}
+
+/// Through the lower face of every volume along axis d.
 template <int D>
 void Transport<D>::find_fluxes(const Volumes& v, int d) {
     const Strides<D> stride = strides_of(v.f);
     const std::ptrdiff_t by = stride[static_cast<std::size_t>(d)];
     Extent<D> faces = v.f.extent() + e<D>(d);
     if (d == D - 1) faces.own = faces.own.with_upper_faces();
-    for_each_cell(faces, [&](const Index<D>& I) {
-        const real C = v.courant(d, I), width = std::abs(C);
-        const std::ptrdiff_t out = C > 0 ? by : -by;
-        const real* f = v.f.at(I) - (C > 0 ? by : 0);  // of the donor
-        const real F = width == 0 ? 0 : C * fraction_of_slab<D>(f, stride, d, C > 0 ? 1 : 0, width);
-        liquid_flux_(I) = F;
-        if (!v.q) return;
-        const real* q = v.q->at(I) - (C > 0 ? by : 0);
-        const bool smooth = are_similar(v.rho.of(f[-out]), v.rho.of(*f), v.rho.of(f[out]));
-        momentum_flux_(I) = (v.rho.liquid * F + v.rho.gas * (C - F)) * (smooth ? leaving(q[-out], *q, q[out], width) : *q);
+    for_each_row(Index<D>{}, faces, [&](const Index<D>& first, int count) {
+        alignas(64) real C[row_block];
+        v.find_courants(d, first, count, C);
+        const real* f = v.f.at(first);
+        real* F = &liquid_flux_(first);
+        if (find_pure_fluxes(f, by, C, count, F))
+            for (int i = 0; i < count; ++i) {
+                const real* donor = f + i - (C[i] > 0 ? by : 0);
+                if (is_mixed(*donor) && C[i] != 0) F[i] = C[i] * fraction_of_slab<D>(donor, stride, d, C[i] > 0 ? 1 : 0, std::abs(C[i]));
+            }
+        if (v.q) find_momentum_fluxes(v.rho, f, v.q->at(first), by, C, F, count, &momentum_flux_(first));
     });
 }
 
 /// Adds c dC except in the last sweep, which takes back that of the earlier ones. The velocity is momentum over mass.
 template <int D>
 void Transport<D>::add_fluxes(const Volumes& v, int number) {
-    const int d = v.motion.order[static_cast<std::size_t>(number)];
-    const real least = 0.1 * v.rho.lightest();  // f may be below 0 by the divergence that the pressure left
-    for_each_cell(v.f.extent(), [&](const Index<D>& I) {
-        const Index<D> upper = I + e<D>(d);
-        real dilation = 0;
-        if (number + 1 < D)
-            dilation = v.dilation(d, I);
-        else
-            for (int k = 0; k < number; ++k) dilation -= v.dilation(v.motion.order[static_cast<std::size_t>(k)], I);
-        const bool mostly_liquid = v.start(I) > 0.5;
-        real& f = v.f(I);
-        const real mass = v.rho.of(f);
-        f += liquid_flux_(I) - liquid_flux_(upper) + (mostly_liquid ? dilation : 0);
-        if (!v.q) return;
-        const real restored = (mostly_liquid ? v.rho.liquid : v.rho.gas) * v.motion.u[v.component](I) * dilation;
-        real& q = (*v.q)(I);
-        q = (mass * q + momentum_flux_(I) - momentum_flux_(upper) + restored) / std::max(v.rho.of(f), least);
+    const std::ptrdiff_t up = liquid_flux_.stride(v.motion.order[static_cast<std::size_t>(number)]);
+    const Densities rho = v.rho;
+    const real least = 0.1 * rho.lightest();  // f may be below 0 by the divergence that the pressure left
+    const bool last = number + 1 == D;
+    for_each_row(Index<D>{}, v.f.extent(), [&](const Index<D>& first, int count) {
+        alignas(64) real dilation[row_block];
+        v.find_dilation(number, first, count, dilation);
+        const real *F = &liquid_flux_(first), *start = &v.start(first), *f = v.f.at(first);
+        if (!v.q) {
+            real* to = last ? &v.to(first) : v.f.at(first);
+#pragma omp simd
+            for (int i = 0; i < count; ++i) to[i] = f[i] + (F[i] - F[i + up] + (start[i] > 0.5 ? dilation[i] : 0));
+            return;
+        }
+        const real *momentum = &momentum_flux_(first), *before = v.motion.u[v.component].at(first), *q = v.q->at(first);
+        real *to = last ? &v.to(first) : v.q->at(first), *new_f = v.f.at(first);
+#pragma omp simd
+        for (int i = 0; i < count; ++i) {
+            const bool mostly_liquid = start[i] > 0.5;
+            const real mass = rho.of(f[i]), fraction = f[i] + (F[i] - F[i + up] + (mostly_liquid ? dilation[i] : 0));
+            const real restored = (mostly_liquid ? rho.liquid : rho.gas) * before[i] * dilation[i], density = rho.of(fraction);
+            new_f[i] = fraction;
+            to[i] = (mass * q[i] + momentum[i] - momentum[i + up] + restored) / (density < least ? least : density);
+        }
     });
 }
 
 template <int D>
 std::size_t Transport<D>::bytes() const {
-    std::size_t total = cell_fraction_.bytes() + liquid_flux_.bytes() + momentum_flux_.bytes();
+    std::size_t total = liquid_flux_.bytes() + momentum_flux_.bytes();
     for (int a = 0; a < D; ++a) total += face_fraction_[static_cast<std::size_t>(a)].bytes() + velocity_[a].bytes();
     return total;
 }

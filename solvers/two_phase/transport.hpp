@@ -36,8 +36,9 @@ template <int D>
 class Transport {
 public:
     Transport(const MacState<D>& state, const EnteringFractions<D>& entering);
-    /// Advects the fractions of cells. Returns the liquid that came in through open sides and inflows, less what left [cells].
-    real advect_fraction(const Motion<D>& motion, Grid<real, D>& f);
+    /// Advects the fractions of cells. Returns the liquid that came in through open sides and inflows, less what left [cells]. `padded`: f
+    /// with its ghosts; it is changed.
+    real advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f);
     /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start;
     /// `carried`: the conditions of the component at the sides; `to`: the new component.
     void advect_momentum(int a, const Motion<D>& motion, const Grid<real, D>& fractions, const Boundary<D>& carried, const Densities& rho,
@@ -54,16 +55,17 @@ private:
         Padded<D>& f;                // and now
         Padded<D>* q;                // velocity component in the volumes; nullptr: only liquid is transported
         Densities rho;
-        /// C of the lower face along axis d: the mean over the two cells of a face's volume.
-        real courant(int d, const Index<D>& I) const {
-            const Padded<D>& u = motion.flow[d];
-            return per_cell[d] * (component < 0 ? u(I) : 0.5 * (u(I - e<D>(component)) + u(I)));
-        }
-        real dilation(int d, const Index<D>& I) const { return courant(d, I + e<D>(d)) - courant(d, I); }
+        Grid<real, D>& to;  // the result: velocity component, or fractions of cells
+        /// C of the lower faces of a row of volumes along axis d: the mean over the two cells of a face's volume.
+        void find_courants(int d, const Index<D>& first, int count, real* C) const;
+        /// Adds sign dC of a row of volumes.
+        void add_dilation(int d, const Index<D>& first, int count, real sign, real* sum) const;
+        /// c dC of the sweep of this number, without c; in the last one what takes that of the earlier ones back.
+        void find_dilation(int number, const Index<D>& first, int count, real* dilation) const;
     };
     /// Returns the liquid that crossed open sides and inflows.
     real run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
-    real inflow(int d) const;
+    real inflow(const Extent<D>& cells, int d) const;
     void find_fluxes(const Volumes& v, int d);
     void add_fluxes(const Volumes& v, int number);
 
@@ -73,7 +75,6 @@ private:
     geometry::Sides<D> sides_;
     FractionGhosts<D> cell_ghosts_;
     std::array<FractionGhosts<D>, D> face_ghosts_;
-    Padded<D> cell_fraction_;
     std::array<Padded<D>, D> face_fraction_;
     PaddedVelocity<D> velocity_;
     Grid<real, D> liquid_flux_, momentum_flux_;  // through the lower faces of the volumes

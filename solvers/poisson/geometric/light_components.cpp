@@ -7,50 +7,89 @@ namespace weir::poisson {
 
 namespace {
 
-/// Union-find; a root is the smallest index of its component.
-class Roots {
-public:
-    explicit Roots(std::vector<int>& parent) : parent_(parent) {}
-    int root(int i) {
-        while (at(i) != i) i = at(i) = at(at(i));
-        return i;
+/// Light cells that follow each other in a row.
+template <int D>
+struct Run {
+    Index<D> first;
+    std::size_t begin;  // the first cell
+    int count;
+    std::size_t end() const { return begin + static_cast<std::size_t>(count); }
+    Index<D> last() const {
+        Index<D> I = first;
+        I[0] += count - 1;
+        return I;
     }
-    void join(int i, int j) {
-        const int a = root(i), b = root(j);
-        at(std::max(a, b)) = std::min(a, b);
-    }
-
-private:
-    int& at(int i) { return parent_[static_cast<std::size_t>(i)]; }
-    std::vector<int>& parent_;
 };
 
-/// f(cell, I) for all light cells in order.
-template <int D, class F>
-void for_each_light(const Grid<std::uint8_t, D>& light, F&& f) {
-    Index<D> I{};
-    for (std::size_t cell = 0; cell < light.size(); ++cell) {
-        if (light[cell] != 0) f(static_cast<int>(cell), I);
-        for (int a = 0; a < D && ++I[a] == light.extent()[a]; ++a)
-            if (a + 1 < D) I[a] = 0;
-    }
-}
-
-/// The parent of each light cell, a smaller or equal index; not set elsewhere.
+/// The runs in order, each with its parent in union-find: a root is the first run of its component.
 template <int D>
-void join_neighbours(const Grid<std::uint8_t, D>& light, const std::array<bool, D>& periodic, std::vector<int>& parent) {
-    Roots roots(parent);
-    for_each_light<D>(light, [&](int cell, const Index<D>& I) {
-        parent[static_cast<std::size_t>(cell)] = cell;
-        for (int a = 0; a < D; ++a) {
-            const int stride = static_cast<int>(light.stride(a)), last = light.extent()[a] - 1;
-            if (I[a] > 0 && light[static_cast<std::size_t>(cell - stride)] != 0) roots.join(cell, cell - stride);
-            const int around = cell - last * stride;
-            if (periodic[static_cast<std::size_t>(a)] && last > 0 && I[a] == last && light[static_cast<std::size_t>(around)] != 0)
-                roots.join(cell, around);
+class Runs {
+public:
+    /// `of`: −1 everywhere; gets the number of each light cell's run.
+    Runs(const Grid<std::uint8_t, D>& light, const std::array<bool, D>& periodic, std::vector<int>& of)
+        : light_(light), periodic_(periodic), of_(of) {
+        Index<D> row{};
+        const auto n = static_cast<std::size_t>(light.extent()[0]);
+        for (std::size_t begin = 0; begin < light.size(); begin += n) {
+            find_in_row(row, begin);
+            for (int a = 1; a < D && ++row[a] == light.extent()[a]; ++a)
+                if (a + 1 < D) row[a] = 0;
         }
-    });
-}
+    }
+    int root(int i) {
+        while (parent(i) != i) i = parent(i) = parent(parent(i));
+        return i;
+    }
+    const std::vector<Run<D>>& list() const { return list_; }
+
+private:
+    void find_in_row(Index<D> row, std::size_t begin) {
+        const int n = light_.extent()[0];
+        const std::uint8_t* values = light_.data() + begin;
+        for (int from = 0, to = 0; from < n; from = to + 1) {
+            from = static_cast<int>(std::find(values + from, values + n, 1) - values);
+            to = static_cast<int>(std::find(values + from, values + n, 0) - values);
+            row[0] = from;
+            if (from < to) add({row, begin + static_cast<std::size_t>(from), to - from});
+        }
+    }
+    void add(const Run<D>& run) {
+        const int number = static_cast<int>(list_.size());
+        list_.push_back(run);
+        parent_.push_back(number);
+        std::fill_n(of_.begin() + static_cast<std::ptrdiff_t>(run.begin), run.count, number);
+        const int n = light_.extent()[0];
+        if (periodic_[0] && run.last()[0] == n - 1) join(number, of_[run.begin - static_cast<std::size_t>(run.first[0])]);
+        for (int a = 1; a < D; ++a) {
+            const auto stride = static_cast<std::size_t>(light_.stride(a));
+            const int last = light_.extent()[a] - 1;
+            if (run.first[a] > 0) join_row(number, run.begin - stride);
+            if (periodic_[static_cast<std::size_t>(a)] && run.first[a] == last)
+                join_row(number, run.begin - static_cast<std::size_t>(last) * stride);
+        }
+    }
+    /// With the light ones of the cells from `at` on, beside the run.
+    void join_row(int run, std::size_t at) {
+        const std::size_t end = at + static_cast<std::size_t>(list_[static_cast<std::size_t>(run)].count);
+        while (at < end) {
+            const int other = of_[at];
+            join(run, other);
+            at = other < 0 ? at + 1 : list_[static_cast<std::size_t>(other)].end();
+        }
+    }
+    void join(int run, int other) {
+        if (other < 0) return;
+        const int a = root(run), b = root(other);
+        parent(std::max(a, b)) = std::min(a, b);
+    }
+    int& parent(int i) { return parent_[static_cast<std::size_t>(i)]; }
+
+    const Grid<std::uint8_t, D>& light_;
+    const std::array<bool, D>& periodic_;
+    std::vector<int>& of_;
+    std::vector<Run<D>> list_;
+    std::vector<int> parent_;
+};
 
 template <int D>
 struct Box {
@@ -70,22 +109,17 @@ struct Box {
 template <int D>
 void find_light_components(const Grid<std::uint8_t, D>& light, const std::array<bool, D>& periodic, LightComponents& found) {
     found.of.assign(light.size(), -1);
-    std::vector<int>& parent = found.of;
-    join_neighbours<D>(light, periodic, parent);
+    Runs<D> runs(light, periodic, found.of);
     std::vector<Box<D>> boxes;
-    Roots roots(parent);
-    std::vector<int> number(light.size());  // of roots; a root comes before the other cells of its component
-    for_each_light<D>(light, [&](int cell, const Index<D>& I) {
-        const int root = roots.root(cell);
-        int& own = number[static_cast<std::size_t>(root)];
-        if (root == cell) own = static_cast<int>(boxes.size()), boxes.emplace_back();
-        boxes[static_cast<std::size_t>(own)].add(I);
-    });
-    for_each_light<D>(light, [&](int cell, const Index<D>&) {  // after the last use of the parents: a root is found within one step
-        number[static_cast<std::size_t>(cell)] = number[static_cast<std::size_t>(roots.root(cell))];
-    });
-    for (std::size_t cell = 0; cell < light.size(); ++cell)
-        if (light[cell] != 0) found.of[cell] = number[cell];
+    std::vector<int> component;
+    for (const Run<D>& run : runs.list()) {
+        const int number = static_cast<int>(component.size()), root = runs.root(number);
+        if (root == number) boxes.emplace_back();
+        component.push_back(root == number ? static_cast<int>(boxes.size()) - 1 : component[static_cast<std::size_t>(root)]);
+        std::fill_n(found.of.begin() + static_cast<std::ptrdiff_t>(run.begin), run.count, component.back());
+        Box<D>& box = boxes[static_cast<std::size_t>(component.back())];
+        box.add(run.first), box.add(run.last());
+    }
     found.extent.clear();
     for (const Box<D>& box : boxes) found.extent.push_back(box.largest_side());
 }

@@ -92,15 +92,19 @@ TEST_IN_2D_AND_3D("light cells are one component if they touch, around a periodi
     at(1, 1) = at(2, 1) = at(2, 2) = at(2, 3) = 1;  // an L, 2 x 3
     at(4, 4) = at(5, 5) = 1;                        // touching at an edge only: two
     at(0, 8) = at(11, 8) = 1;                       // one if x is periodic
+    at(6, 0) = at(6, 9) = 1;                        // one if y is periodic
     poisson::LightComponents found;
     std::array<bool, D> periodic{};
     poisson::find_light_components<D>(light, periodic, found);
-    EXPECT_EQ(found.extent, (std::vector<int>{3, 1, 1, 1, 1}));
+    EXPECT_EQ(found.extent, (std::vector<int>{1, 3, 1, 1, 1, 1, 1}));
     periodic[0] = true;
     poisson::find_light_components<D>(light, periodic, found);
-    EXPECT_EQ(found.extent, (std::vector<int>{3, 1, 1, 12}));
-    EXPECT_EQ(std::count(found.of.begin(), found.of.end(), 0), 4);
-    EXPECT_EQ(std::count_if(found.of.begin(), found.of.end(), [](int c) { return c >= 0; }), 8);
+    EXPECT_EQ(found.extent, (std::vector<int>{1, 3, 1, 1, 12, 1}));
+    periodic[1] = true;
+    poisson::find_light_components<D>(light, periodic, found);
+    EXPECT_EQ(found.extent, (std::vector<int>{10, 3, 1, 1, 12}));
+    EXPECT_EQ(std::count(found.of.begin(), found.of.end(), 1), 4);
+    EXPECT_EQ(std::count_if(found.of.begin(), found.of.end(), [](int c) { return c >= 0; }), 10);
 }
 
 // Three by three cells of gas straddle the coarse cells of every level; they are one unknown from boxes of two cells on.
