@@ -12,7 +12,6 @@ from problems import Frame, Problem, Run
 from weir import user_seconds
 
 packages = "openfoam"
-courant = 0.25
 crank_nicolson = ", C-N"  # ends the name of a solver that runs with Crank-Nicolson 0.9 in place of the tutorials' implicit Euler
 configurations = ["interFoam", "interFoam" + crank_nicolson, "interIsoFoam"]
 environment = os.environ | {"WM_PROJECT_DIR": os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"), "OMP_NUM_THREADS": "1"}
@@ -74,7 +73,7 @@ def write(p: Problem, cells: tuple[int, int], folder: pathlib.Path, configuratio
     files = {
         "system/controlDict": f"""application {solver}; startFrom startTime; startTime 0; stopAt endTime; endTime {p.end!r};
 deltaT {min(longest, 1e-3)}; writeControl adjustable; writeInterval {p.every!r}; writeFormat binary; writePrecision 12;
-timeFormat general; timePrecision 9; adjustTimeStep yes; maxCo {courant}; maxAlphaCo {courant}; maxDeltaT {longest};""",
+timeFormat general; timePrecision 9; adjustTimeStep yes; maxCo {p.courant}; maxAlphaCo {p.courant}; maxDeltaT {longest};""",
         "system/blockMeshDict": mesh(p, cells),
         "system/fvSchemes": f"""ddtSchemes {{ default {ddt}; }} gradSchemes {{ default Gauss linear; }}
 divSchemes {{ div(rhoPhi,U) Gauss {convections[solver]}; div(phi,alpha) Gauss vanLeer; div(phirb,alpha) Gauss {compressions[solver]};

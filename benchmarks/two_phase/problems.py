@@ -27,6 +27,7 @@ class Problem:
     measure: Callable[["Run"], dict[str, str]]
     settings: list[str] = dataclasses.field(default_factory=list)  # of weir's scene
     max_dt: float = math.inf
+    courant: float = 0.25           # of OpenFOAM
     no_slip_ends: bool = False
     periodic: bool = False
     on_grid_lines: bool = False     # the surface at the start: no cell is mixed
@@ -167,7 +168,7 @@ problems = [
             references="Hysing et al. 2009, third code: centre of the bubble at t = 3, largest mean velocity and its time, least circularity."),
     Problem("rising bubble, case 2", "rising_bubble", (1, 2), (1000, 1), (0.01, 0.1), 1.96, 0.98, 1.0, 0.02,
             "(x - 0.5)*(x - 0.5) + (y - 0.5)*(y - 0.5) - 0.0625", [(32, 64), (64, 128)], 1e-4,
-            lambda run: bubble(run, {"y": 0.6873, "v": 0.2382, "v max": 0.2502, "t of v max": 0.7316}), no_slip_ends=True,
+            lambda run: bubble(run, {"y": 0.6873, "v": 0.2382, "v max": 0.2502, "t of v max": 0.7316}), courant=0.1, no_slip_ends=True,
             settings=["gas.density = 1.0", "gas.viscosity = 0.1", "effects.surface_tension.sigma = 1.96"],
             references="The same for test case 2: centre and velocity at t = 1, largest mean velocity and its time."),
     Problem("standing wave, 700:1", "two_fluid_wave", (1, 2), (700, 1), (0.001, 0.001), 0, 9.81, 2 * period, period / 40,
