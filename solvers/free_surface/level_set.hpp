@@ -156,6 +156,9 @@ void LevelSet<D>::for_each_own(std::size_t first, std::size_t last, F&& f) const
     parallel_for(static_cast<int>(place(first)), static_cast<int>(place(last)), [&](int i) { f(own_[static_cast<std::size_t>(i)]); });
 }
 
+/// The part of a cell outside solids: below the plane fitted to the distances at its corners.
+template <int D>
+real open_part_of_cell(const SolidPlacement<D>& solids, const Index<D>& I);
 /// Integral over the unit cube about 0 of x where value + g·x < 0.
 template <int D>
 Vec<D> moment_below_plane(real value, const Vec<D>& g);

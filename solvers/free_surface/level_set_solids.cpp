@@ -63,7 +63,21 @@ void LevelSet<D>::uncover(const Grid<std::uint8_t, D>& closed) {
     refresh(phi, ring, wide());
 }
 
-/// The linear fit of the distances at a cell's corners.
+template <int D>
+real open_part_of_cell(const SolidPlacement<D>& solids, const Index<D>& I) {
+    real mean = 0, least = infinity;
+    Vec<D> slope{};
+    for (unsigned corner = 0; corner < 1U << D; ++corner) {
+        Index<D> J = I;
+        for (int d = 0; d < D; ++d) J[d] += static_cast<int>(corner >> d & 1U);
+        const real distance = solids.corner_distance(J);
+        least = std::min(least, distance);
+        mean += distance / (1 << D);
+        for (int d = 0; d < D; ++d) slope[d] += (corner >> d & 1U ? distance : -distance) / (1 << (D - 1));
+    }
+    return least >= 0 ? 1 : fraction_below_plane<D>(-mean, -1.0 * slope);
+}
+
 template <int D>
 void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
     if (open_part_.empty()) open_part_ = Grid<real, D>(frame_.cells, 1);
@@ -72,17 +86,7 @@ void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids) {
     for (const CellBox<D>& box : solids.changed())
         for_each_held(open_part_, box.lo, box.hi, [&](const Index<D>& I) {
             if (distributed && (!frame_.own().contains(I[D - 1]) || !solids.holds_corners(I[D - 1]))) return;
-            real mean = 0, least = infinity;
-            Vec<D> slope{};
-            for (unsigned corner = 0; corner < 1U << D; ++corner) {
-                Index<D> J = I;
-                for (int d = 0; d < D; ++d) J[d] += static_cast<int>(corner >> d & 1U);
-                const real distance = solids.corner_distance(J);
-                least = std::min(least, distance);
-                mean += distance / (1 << D);
-                for (int d = 0; d < D; ++d) slope[d] += (corner >> d & 1U ? distance : -distance) / (1 << (D - 1));
-            }
-            open_part_(I) = least >= 0 ? 1 : fraction_below_plane<D>(-mean, -1.0 * slope);
+            open_part_(I) = open_part_of_cell(solids, I);
         });
     if (distributed) refresh(open_part_, ring, wide() + 1);
 }
@@ -165,7 +169,8 @@ void LevelSet<D>::continue_layer(std::size_t first, std::size_t last) {
 #define WEIR_INSTANTIATE(D)                                                                                                        \
     template void LevelSet<D>::continue_into_solids();                                                                             \
     template void LevelSet<D>::set_closed(const Grid<std::uint8_t, D>& closed, const std::array<std::vector<Index<D>>, D>* faces); \
-    template void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids);
+    template void LevelSet<D>::set_open_parts(const SolidPlacement<D>& solids);                                                    \
+    template real open_part_of_cell<D>(const SolidPlacement<D>&, const Index<D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)
 #undef WEIR_INSTANTIATE

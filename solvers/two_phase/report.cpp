@@ -46,13 +46,14 @@ Vec<D> TwoPhase<D>::moment_of_liquid() const {
     Vec<D> moment;
     for (int d = 0; d < D; ++d)
         moment[d] = state_.u.cell_volume() * sum_over(state_.extent(), [&](const Index<D>& I) {
-                        if (!is_open(state_, I)) return 0.0;
+                        const real part = room(I);
+                        if (part == 0) return 0.0;
                         const real f = fraction()(I), sum = f * (state_.u.cell_centre(I)[d] - state_.u.origin[d]);
-                        if (!is_mixed(f)) return sum;
+                        if (!is_mixed(f)) return part * sum;
                         const Plane<D> plane = plane_at<D>(fraction_ghosts_.at(I), stride);
                         real value = -plane.alpha;
                         for (int k = 0; k < D; ++k) value += 0.5 * plane.m[k];
-                        return sum + state_.u.h[d] * free_surface::moment_below_plane(value, plane.m)[d];
+                        return part * (sum + state_.u.h[d] * free_surface::moment_below_plane(value, plane.m)[d]);
                     });
     return moment;
 }
@@ -65,8 +66,7 @@ Vec<D> TwoPhase<D>::moment_of_space() const {
     for (int d = 0; d < D; ++d) {
         const real h = state_.u.h[d];
         moment[d] = 0.5 * box * h * state_.u.cells[d];
-        if (solids_.any())
-            moment[d] = cell * h * sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? I[d] + 0.5 : 0.0; });
+        if (solids_.any()) moment[d] = cell * h * sum_over(state_.extent(), [&](const Index<D>& I) { return room(I) * (I[d] + 0.5); });
     }
     return moment;
 }
@@ -76,17 +76,21 @@ template <int D>
 void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
     const std::string unit = D == 2 ? "m^2" : "m^3";
     const real cell = state_.u.cell_volume();
-    const real liquid = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? fraction()(I) : 0; });
-    const real gas = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? 1 - fraction()(I) : 0; });
+    const real liquid = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return room(I) * fraction()(I); });
+    const real gas = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return room(I) * (1 - fraction()(I)); });
     const Vec<D> of_liquid = moment_of_liquid(), of_gas = moment_of_space() - of_liquid;
     list.push_back({"volume", unit, liquid});
     list.push_back({"gas_volume", unit, gas});
     if (has_open_sides()) list.push_back({"poured_volume", unit, poured_});
+    if (solids_.moving()) {
+        list.push_back({"volume_corrected", unit, cell * visible_.corrected()});
+        list.push_back({"volume_corrections", unit, cell * visible_.corrections()});
+    }
     list.push_back({"potential_energy", D == 2 ? "J/m" : "J", -dot(gravity_, options_.rho.liquid * of_liquid + options_.rho.gas * of_gas)});
     for (int d = 0; d < D; ++d) {
         const std::string axis(1, "xyz"[d]);
         const real speed = cell * sum_over(state_.extent(), [&](const Index<D>& I) {
-                               return is_open(state_, I) ? (1 - fraction()(I)) * 0.5 * (state_.u[d](I) + state_.u[d](I + e<D>(d))) : 0;
+                               return room(I) * (1 - fraction()(I)) * 0.5 * (state_.u[d](I) + state_.u[d](I + e<D>(d)));
                            });
         list.push_back({"centre_" + axis, "m", liquid > 0 ? state_.u.origin[d] + of_liquid[d] / liquid : not_applicable});
         list.push_back({"gas_centre_" + axis, "m", gas > 0 ? state_.u.origin[d] + of_gas[d] / gas : not_applicable});
@@ -139,6 +143,7 @@ void TwoPhase<D>::save(Checkpoint& to) const {
     to.put_value("two_phase.ruled", ruled_);
     if (has_open_sides()) to.put_value("two_phase.poured", poured_);
     if (brush_forcing_) brush_forcing_->save(to);
+    if (solids_.moving()) visible_.save(to);
 }
 
 template <int D>
@@ -150,6 +155,11 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !own().distributed();
     refresh(state_.u[D - 1], around_.repeats());
+    if (solids_.moving()) {
+        solids_.place(state_, state_.time);
+        see_solids();
+        visible_.restore(from);
+    }
     find_face_densities();
     find_rate();
     distance_is_stale_ = true;
@@ -158,7 +168,7 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
 template <int D>
 std::size_t TwoPhase<D>::bytes() const {
     std::size_t total = state_.bytes() + transport_.bytes() + fraction_ghosts_.bytes() + curvature_.bytes() + projection_.bytes() +
-                        effects_.bytes() + distance_.bytes() + solids_.bytes() + continued_.bytes() +
+                        effects_.bytes() + distance_.bytes() + solids_.bytes() + continued_.bytes() + visible_.bytes() +
                         (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0);
     for (const auto& fractions : faces_) total += fractions.bytes();
     for (const auto& component : open_flow_.face) total += component.bytes();

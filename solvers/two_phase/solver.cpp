@@ -1,6 +1,7 @@
 #include "two_phase/solver.hpp"
 
 #include "core/error.hpp"
+#include "mac/grid/closed_volume.hpp"
 #include "mac/grid/inflow.hpp"
 #include "mac/grid/rows.hpp"
 #include "two_phase/tension.hpp"
@@ -21,14 +22,16 @@ StepReport TwoPhase<D>::step(real dt) {
     apply_viscosity(dt);                                // (ρ_a − dt ∇·2μD) u = ρ_a u
     effects_.apply(Stage::force, state_, dt, passes_);  // u += dt g
     apply_tension(dt);                                  // u += dt σ κ ∇f / ρ_a
-    const poisson::Report& poisson = project(dt);       // u −= dt ∇p / ρ_a,  ∇·u = 0
+    const poisson::Report poisson = mac::explained_by_room(state_, solids_, [&] { return project(dt); });  // u −= dt ∇p / ρ_a,  ∇·u = 0
+    const real divergence = max_divergence(state_);
+    mac::require_room(state_, solids_, divergence);
     find_rate();
     check();
     ++steps_;
     state_.time += dt;
     return {.dt = dt,
             .cfl = dt * rate_,
-            .max_divergence = max_divergence(state_),
+            .max_divergence = divergence,
             .iterations = poisson.iterations,
             .residual_before = poisson.residual_before,
             .residual_after = poisson.residual_after,
@@ -40,6 +43,7 @@ template <int D>
 Motion<D> TwoPhase<D>::motion(real dt) {
     for (int a = 0; a < D; ++a) fill(state_.before[a], state_.u[a], mirrored_[static_cast<std::size_t>(a)]);
     if (solids_.any()) find_open_flow<D>(state_, solids_, mirrored_, open_flow_);
+    if (solids_.moving()) add_solid_flow<D>(state_, mirrored_, open_flow_);
     const PaddedVelocity<D>& flow = solids_.any() ? open_flow_ : state_.before;
     return {state_.before, flow, dt, sweep_order<D>(steps_ + experiment_.first_order_of_sweeps)};
 }
@@ -54,20 +58,39 @@ void TwoPhase<D>::transport(real dt) {
             const auto at = static_cast<std::size_t>(a);
             transport_.advect_momentum(a, motion, faces_[at], state_.boundary[at], rho, state_.u[a]);
         }
+        move_solids(state_.time + dt);
         set_side_faces(state_.u, state_.sides, state_.nu);
         solids_.set_faces(state_);
         sync_periodic(state_.u, state_.sides);
     }
     const auto timed = passes_.time("transport liquid");
     Grid<real, D>& f = state_.fields[0].values;
-    poured_ += state_.u.cell_volume() * transport_.advect_fraction(motion, fraction_ghosts_, f);
+    const real entered = transport_.advect_fraction(motion, fraction_ghosts_, f);
+    poured_ += state_.u.cell_volume() * entered;
     ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
     hand_on_dust(fraction_ghosts_, around_, state_.cells, f);
     if (solids_.any()) {
         ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
         continued_.extend(ghosts_of_fraction_, fraction_ghosts_, f);
     }
+    if (solids_.moving()) visible_.correct(state_, entered, f);
     distance_is_stale_ = true;
+}
+
+/// Faces that a solid uncovers keep the velocity that was advected there.
+template <int D>
+void TwoPhase<D>::move_solids(real t) {
+    if (!solids_.moving()) return;
+    const auto timed = passes_.time("solids");
+    solids_.place(state_, t);
+    see_solids();
+}
+
+/// Called after solids were placed.
+template <int D>
+void TwoPhase<D>::see_solids() {
+    continued_ = ContinuedFractions<D>(state_, around_);
+    if (solids_.moving()) visible_.see_solids(solids_, state_);
 }
 
 /// The fractions of the faces' volumes, and the response of their velocity to the pressure.
@@ -161,7 +184,10 @@ void TwoPhase<D>::add_rate(int a, const Index<D>& first, int count, real* sum) c
     };
     const real* q = &u(first);
     if (!solids_.any()) return add([q](std::ptrdiff_t i) { return q[i]; });
-    add([q, open = &state_.solid.open[static_cast<std::size_t>(a)](first)](std::ptrdiff_t i) { return open[i] * q[i]; });
+    const real *open = &state_.solid.open[static_cast<std::size_t>(a)](first),
+               *swept = &state_.solid.velocity[static_cast<std::size_t>(a)](first);
+    if (!solids_.moving()) return add([q, open](std::ptrdiff_t i) { return open[i] * q[i]; });
+    add([q, open, swept](std::ptrdiff_t i) { return open[i] * q[i] + (1 - open[i]) * swept[i]; });
 }
 
 template <int D>

@@ -11,6 +11,7 @@
 #include "mac/grid/state.hpp"
 #include "scene/solver_kind.hpp"
 #include "two_phase/curvature.hpp"
+#include "two_phase/moving_solids.hpp"
 #include "two_phase/solids.hpp"
 #include "two_phase/transport.hpp"
 #include "two_phase/viscosity.hpp"
@@ -88,10 +89,13 @@ private:
     void place_solids(const scene::Scene& scene);
     void start_liquid(const scene::Scene& scene);
     void start_velocity(const scene::Scene& scene);
+    void require_room(const scene::Scene& scene) const;
 
     // The passes of a step, in order
     Motion<D> motion(real dt);
     void transport(real dt);
+    void move_solids(real t);
+    void see_solids();
     void find_face_densities();
     void use_mean_densities();
     void apply_viscosity(real dt);
@@ -111,6 +115,7 @@ private:
     Vec<D> moment_of_space() const;
     void add_volumes(std::vector<Integral>& list) const;
     real furthest(int axis) const;
+    real room(const Index<D>& I) const { return solids_.moving() ? visible_.part(I) : is_open(state_, I) ? 1 : 0; }
 
     Options options_;
     Experiment experiment_;
@@ -127,6 +132,7 @@ private:
     Transport<D> transport_;
     PaddedVelocity<D> open_flow_;      // empty without solids
     ContinuedFractions<D> continued_;  // likewise
+    VisibleLiquid<D> visible_;         // empty without moving solids
     Padded<D> fraction_ghosts_;
     FaceFractions<D> faces_;
     Curvature<D> curvature_;                   // empty without tension

@@ -2,6 +2,7 @@
 #include "free_surface/start.hpp"
 #include "core/error.hpp"
 #include "geometry/brush.hpp"
+#include "mac/grid/closed_volume.hpp"
 #include "mac/grid/effects.hpp"
 #include "mac/grid/inflow.hpp"
 #include "mac/grid/initial.hpp"
@@ -9,6 +10,8 @@
 #include "scene/names.hpp"
 #include "two_phase/effects.hpp"
 #include "two_phase/solver.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -128,7 +131,19 @@ void TwoPhase<D>::place_solids(const scene::Scene& scene) {
                      "solver \"two_phase\" has no contact angle at solids, so it does not support surface tension together with them",
                      "without solids, or without surface tension");
     open_flow_ = PaddedVelocity<D>(state_.u);
-    continued_ = ContinuedFractions<D>(state_, around_);
+    if (solids_.moving() && scene.effect("viscosity"))
+        scene.refuse("effects.viscosity", "solver \"two_phase\" does not support viscosity together with moving solids",
+                     "without viscosity, or with solids at rest");
+    see_solids();
+    if (solids_.moving()) require_room(scene);
+}
+
+template <int D>
+void TwoPhase<D>::require_room(const scene::Scene& scene) const {
+    const Squeezed<D> region = find_squeezed(state_, solids_.solids());
+    if (region.any())
+        scene.refuse(fmt::format("solids[{}].motion", region.solid), text_of(region) + ": both fluids are incompressible",
+                     "add a side of kind \"outflow\" (p = 0)");
 }
 
 template <int D>
@@ -139,6 +154,7 @@ void TwoPhase<D>::start_liquid(const scene::Scene& scene) {
     start_fractions<D>(*liquid, state_.u, state_.fields[0].values);
     if (sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? fraction()(I) : 0; }) == 0)
         scene.refuse("liquid", "there is no liquid in the domain");
+    if (solids_.moving()) visible_.start(fraction());
     find_face_densities();
 }
 
@@ -156,7 +172,7 @@ void TwoPhase<D>::start_velocity(const scene::Scene& scene) {
         sync_periodic(state_.u, state_.sides);
     }
     const bool enters = std::any_of(entering_.begin(), entering_.end(), [](const auto& ends) { return ends[0] || ends[1]; });
-    if (!liquid_moves && !enters && scene.root().text_or("initial.velocity.name", "rest") == "rest") return;
+    if (!liquid_moves && !enters && !solids_.moving() && scene.root().text_or("initial.velocity.name", "rest") == "rest") return;
     project(1);
     state_.p.fill(0);
 }
@@ -169,6 +185,8 @@ template void TwoPhase<2>::refuse_sides(const scene::Scene&) const;
 template void TwoPhase<3>::refuse_sides(const scene::Scene&) const;
 template void TwoPhase<2>::place_solids(const scene::Scene&);
 template void TwoPhase<3>::place_solids(const scene::Scene&);
+template void TwoPhase<2>::require_room(const scene::Scene&) const;
+template void TwoPhase<3>::require_room(const scene::Scene&) const;
 template void TwoPhase<2>::start_liquid(const scene::Scene&);
 template void TwoPhase<3>::start_liquid(const scene::Scene&);
 template void TwoPhase<2>::start_velocity(const scene::Scene&);
