@@ -84,6 +84,9 @@ Key side_keys() {
 
 void check_parallel(const scene::Scene& scene) {
     if (scene.effect("viscosity")) scene::one_process_only(scene, "effects.viscosity", "viscosity of two phases is");
+    if (scene.has("solids"))
+        for (const auto& solid : scene.root().tables("solids"))
+            if (solid.has("motion")) scene::one_process_only(scene, "solids", "moving solids among two phases are");
     scene::refuse_brush(scene);
 }
 
