@@ -14,7 +14,7 @@ template <int D>
 void TwoPhase<D>::setup(const Operator<D>& A, bool distributed) {
     ready_ = false;
     distributed_ = distributed;
-    two_phases_ = !A.light.empty();
+    two_phases_ = !A.light.empty() && !A.weight[0].empty();
     if (!two_phases_) return;
     Grid<std::uint8_t, D> light = A.light;
     for_each_held(light, Index<D>{}, light.extent(), [&](const Index<D>& I) { light(I) = light(I) != 0 && A.cells(I) == Cell::fluid; });
