@@ -11,9 +11,9 @@ namespace weir::poisson {
 
 namespace {
 
-/// Expected totals of the geometric cycle above which the next method continues: pairwise aggregation, or the aggregates of two phases,
-/// which take 6 to 14. Open water and one interface take 7 to 15.
-constexpr int open_water_iterations = 32, two_phase_iterations = 20;
+/// With two phases the next method is the cycle by phase, which takes 6 to 15 iterations. A projected total of more than 24 is left to it
+/// after 12, so that the sum is about 20. Before that, totals of 16 are projected as 25 (one bubble at 1024²).
+constexpr ExpectedIterations two_phase_iterations{.early = 32, .late = 24};
 
 template <int D>
 class Multigrid final : public Solver<D>, public ZeroCoupling<D> {
@@ -27,8 +27,8 @@ public:
         algebraic_.reset();
         geometric_fits_ = geometric_.setup(problem_);
         if (!geometric_fits_) set_up_algebraic();
-        two_phase_.setup(A, problem_.own().distributed());
-        geometric_.give_up_above(two_phase_.any() ? two_phase_iterations : open_water_iterations);
+        two_phase_.setup(A, problem_);
+        geometric_.give_up_above(two_phase_.any() ? two_phase_iterations : ExpectedIterations{});
         if (geometric_fits_ && two_phase_.is_cloud()) two_phase_.prepare(problem_, geometric_.hierarchy());
         if (options_.record_history) report_.history.reserve(static_cast<std::size_t>(options_.max_iterations));
         report_.components = problem_.closed();

@@ -4,7 +4,8 @@
 // vector that no smoother reduces, one per bubble. A thin film of gas is a chain of such bubbles: beside a partly filled cell a face has
 // nearly the weight of the liquid. A face is strong here if its weight is at least a quarter of the largest weight of both its unknowns
 // (Ruge & Stüben 1987), and above four times that of the heavier phase. Unknowns that strong faces connect are a cluster. A cluster of at
-// most four boxes along each axis is one aggregate. A box of 2^D unknowns gives one aggregate for each larger cluster, and one for the rest.
+// most four boxes along each axis is one aggregate. A box of 2^D unknowns gives one aggregate for each larger cluster, and one for the
+// rest.
 #pragma once
 #include "poisson/geometric/natural.hpp"
 #include "poisson/matrix/aggregation.hpp"
@@ -28,6 +29,7 @@ inline bool is_strong(real weight, real largest, real other_largest, real floor)
 /// The cluster of each unknown, −1: none; and the largest side of each cluster [boxes].
 struct Clusters {
     std::vector<int> of, extent;
+    std::size_t bytes() const { return (of.capacity() + extent.capacity()) * sizeof(int); }
 };
 
 /// Union-find over pairs of strongly coupled unknowns.
@@ -50,6 +52,7 @@ PhaseUnknowns<D> unknown_cells(const Natural<D>& problem);
 /// Joins the unknowns of boxes of two along each axis of `halved`. The aggregates are numbered by colour: boxes of even and of odd index
 /// sum, then whole clusters; a sweep in this order has no long chain of dependent unknowns.
 template <int D>
-Aggregation join_clusters(const PhaseUnknowns<D>& fine, const std::array<bool, D>& halved, const Clusters& clusters, PhaseUnknowns<D>& coarse);
+Aggregation join_clusters(const PhaseUnknowns<D>& fine, const std::array<bool, D>& halved, const Clusters& clusters,
+                          PhaseUnknowns<D>& coarse);
 
 }  // namespace weir::poisson

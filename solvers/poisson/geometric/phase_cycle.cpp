@@ -1,7 +1,5 @@
 #include "poisson/geometric/phase_cycle.hpp"
 
-#include "poisson/geometric/phase_matrix.hpp"
-
 #include <algorithm>
 
 namespace weir::poisson {
@@ -9,7 +7,6 @@ namespace weir::poisson {
 namespace {
 
 constexpr std::size_t direct_unknowns = 300;  // levels up to this size are solved directly
-constexpr real floor_ratio = 4;               // strong faces have more than this many times the weight of the heavier phase
 
 }  // namespace
 
@@ -20,19 +17,17 @@ SplitRows::SplitRows(const Matrix& A) : start_(A.start), middle_(A.start.begin()
 }
 
 template <int D>
-void PhaseCycle<D>::build(const Natural<D>& problem, const LightComponents& light, const std::vector<Level<D>>& plan) {
+void PhaseCycle<D>::build(const Natural<D>& problem, const PhaseCells<D>& cells, const std::vector<Level<D>>& plan) {
     levels_.clear();
-    const Vec<D> floor = floor_ratio * mean_heavy_weight(problem, light);
     CoarseLevel first;
-    const PhaseUnknowns<D> cells = unknown_cells(problem);
-    of_cells_ = join_clusters<D>(cells, plan[0].coarsened, clusters_of_cells(problem, cells, floor), first.unknowns);
+    of_cells_ = join_clusters<D>(cells.unknowns, plan[0].coarsened, cells.clusters, first.unknowns);
     first.A = matrix_of_cells<D>(problem, of_cells_, plan[0].coarsened);
     levels_.push_back(std::move(first));
     for (std::size_t l = 1; l + 1 < plan.size() && levels_.back().A.diagonal.size() > direct_unknowns; ++l) {
         CoarseLevel& fine = levels_.back();
         real floor_here = 0;
         for (std::size_t a = 0; a < D; ++a)
-            floor_here = std::max(floor_here, floor[static_cast<int>(a)] * plan[l].plain_weight[a] / plan[0].plain_weight[a]);
+            floor_here = std::max(floor_here, cells.floor[static_cast<int>(a)] * plan[l].plain_weight[a] / plan[0].plain_weight[a]);
         CoarseLevel next;
         fine.groups = join_clusters<D>(fine.unknowns, plan[l].coarsened, clusters_of(fine.A, fine.unknowns, floor_here), next.unknowns);
         next.A = matrix_of<D>(fine.A, fine.unknowns, fine.groups, plan[l].coarsened);
@@ -102,8 +97,8 @@ template <int D>
 std::size_t PhaseCycle<D>::bytes() const {
     std::size_t sum = of_cells_.of.capacity() * sizeof(int) + coarsest_.bytes() + coarsest_components_.bytes() + finder_.bytes();
     for (const CoarseLevel& level : levels_)
-        sum += level.unknowns.bytes() + level.A.bytes() + level.groups.of.capacity() * sizeof(int) +
-               level.rows.bytes() + (level.inverse.capacity() + level.x.capacity() + level.b.capacity() + level.later.capacity()) * sizeof(real);
+        sum += level.unknowns.bytes() + level.A.bytes() + level.groups.of.capacity() * sizeof(int) + level.rows.bytes() +
+               (level.inverse.capacity() + level.x.capacity() + level.b.capacity() + level.later.capacity()) * sizeof(real);
     return sum;
 }
 

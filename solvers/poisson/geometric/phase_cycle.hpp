@@ -3,8 +3,7 @@
 // symmetric W(1,1): it takes half the iterations of a V-cycle where many components straddle the sides of coarse cells.
 #pragma once
 #include "poisson/geometric/level.hpp"
-#include "poisson/geometric/light_components.hpp"
-#include "poisson/geometric/phase_aggregates.hpp"
+#include "poisson/geometric/phase_matrix.hpp"
 #include "poisson/matrix/sparse_cholesky.hpp"
 
 namespace weir::poisson {
@@ -25,7 +24,8 @@ private:
     real sum(const Vector& x, int begin, int end) const {
         real sum = 0;
         for (int k = begin; k < end; ++k)
-            sum += static_cast<real>(weight_[static_cast<std::size_t>(k)]) * x[static_cast<std::size_t>(column_[static_cast<std::size_t>(k)])];
+            sum +=
+                static_cast<real>(weight_[static_cast<std::size_t>(k)]) * x[static_cast<std::size_t>(column_[static_cast<std::size_t>(k)])];
         return sum;
     }
     std::vector<int> start_{0}, middle_, column_;
@@ -36,7 +36,7 @@ template <int D>
 class PhaseCycle {
 public:
     /// `plan`: the levels of the geometric hierarchy, whose coarsened axes these levels share.
-    void build(const Natural<D>& problem, const LightComponents& light, const std::vector<Level<D>>& plan);
+    void build(const Natural<D>& problem, const PhaseCells<D>& cells, const std::vector<Level<D>>& plan);
     /// The unknown of each cell, −1 outside fluid.
     const std::vector<int>& of_cells() const { return of_cells_.of; }
     /// Right-hand side of the first level, which the caller fills, and the result of apply().

@@ -8,6 +8,8 @@ namespace {
 
 constexpr auto fluid = static_cast<std::uint8_t>(Cell::fluid), air = static_cast<std::uint8_t>(Cell::air);
 
+constexpr real floor_ratio = 4;  // strong faces have more than this many times the weight of the heavier phase
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The faces of cells, by the lower and the upper side of each axis.
@@ -138,18 +140,17 @@ real weight_factor(const PhaseUnknowns<D>& unknowns, const std::array<bool, D>& 
     return 0.5;
 }
 
-}  // namespace
-
+/// The mean weight along each axis of faces between cells of the heavier phase, 0: none.
 template <int D>
-Vec<D> mean_heavy_weight(const Natural<D>& problem, const LightComponents& light) {
+Vec<D> mean_heavy_weight(const Natural<D>& problem, const std::uint8_t* light) {
     Vec<D> sum{}, count{}, mean{};
     const int n = problem.extent()[0];
     for_each_row_of_faces(problem, [&](int row, int below, int a, const real* w) {
-        const int *own = light.of.data() + row * n, *other = a == 0 ? own - 1 : light.of.data() + below * n;
+        const std::uint8_t *own = light + row * n, *other = a == 0 ? own - 1 : light + below * n;
         real weights = 0, faces = 0;
 #pragma omp simd reduction(+ : weights, faces)
         for (int i = a == 0 ? 1 : 0; i < n; ++i) {
-            const bool heavy = own[i] < 0 && other[i] < 0 && w[i] > 0;
+            const bool heavy = own[i] == 0 && other[i] == 0 && w[i] > 0;
             weights += heavy ? w[i] : 0, faces += heavy ? 1 : 0;
         }
         sum[a] += weights, count[a] += faces;
@@ -158,27 +159,49 @@ Vec<D> mean_heavy_weight(const Natural<D>& problem, const LightComponents& light
     return mean;
 }
 
+/// The largest weight of each cell.
 template <int D>
-Clusters clusters_of_cells(const Natural<D>& problem, const PhaseUnknowns<D>& cells, const Vec<D>& floor) {
-    ClusterFinder finder(cells.box.size());
-    const CellFaces<D> faces(problem);
-    std::vector<float> most(cells.box.size(), 0);  // 0: not known yet
-    const auto largest = [&](int cell) {
-        float& own = most[at(cell)];
-        if (own == 0) faces.of(cell, [&](int, real w, int other) { own = std::max(own, other < 0 ? 0 : static_cast<float>(w)); });
-        return own;
-    };
+std::vector<float> largest_weights(const Natural<D>& problem) {
+    const int n = problem.extent()[0];
+    std::vector<float> most(static_cast<std::size_t>(n) * static_cast<std::size_t>(problem.planes() * problem.rows_in_plane()), 0);
+    const auto raise = [](float& m, real w) { m = std::max(m, static_cast<float>(w)); };
+    for_each_row_of_faces(problem, [&](int row, int below, int a, const real* w) {
+        float *own = most.data() + row * n, *other = a == 0 ? own - 1 : most.data() + below * n;
+        const int first = a == 0 ? 1 : 0;
+        for (int i = first; i < n; ++i) raise(own[i], w[i]);
+        for (int i = first; i < n; ++i) raise(other[i], w[i]);
+        if (a == 0 && problem.periodic()[0]) raise(own[0], w[0]), raise(own[n - 1], w[0]);
+    });
+    return most;
+}
+
+}  // namespace
+
+template <int D>
+PhaseCells<D> find_phase_cells(const Natural<D>& problem, const std::uint8_t* light) {
+    PhaseCells<D> found;
+    found.unknowns = unknown_cells(problem);
+    found.floor = floor_ratio * mean_heavy_weight(problem, light);
+    const auto& box = found.unknowns.box;
+    ClusterFinder finder(box.size());
+    const std::vector<float> most = largest_weights(problem);
     const int n = problem.extent()[0];
     for_each_row_of_faces(problem, [&](int row, int below, int a, const real* w) {
-        const bool around = a > 0 || problem.periodic()[0];
-        for (int i = around ? 0 : 1; i < n; ++i) {
-            if (!(w[i] > floor[a])) continue;
+        const auto floor = found.floor[a];
+        for (int i = a > 0 || problem.periodic()[0] ? 0 : 1; i < n; ++i) {
+            if (!(w[i] > floor)) continue;
             const int one = row * n + i, other = cell_below(row, below, i, n, a);
-            if (cells.box[at(one)] < 0 || cells.box[at(other)] < 0) continue;
-            if (is_strong(w[i], largest(one), largest(other), floor[a])) finder.join(one, other);
+            if (box[at(one)] < 0 || box[at(other)] < 0) continue;
+            if (is_strong(w[i], most[at(one)], most[at(other)], floor)) finder.join(one, other);
         }
     });
-    return finder.find(cells);
+    found.clusters = finder.find(found.unknowns);
+    const float quarter = most.empty() ? 0 : 0.25F * *std::max_element(most.begin(), most.end());
+    std::vector<char> light_cluster(found.clusters.extent.size(), 0);
+    for (std::size_t i = 0; i < most.size(); ++i)
+        if (const int c = found.clusters.of[i]; c >= 0 && most[i] >= quarter) light_cluster[at(c)] = 1;
+    found.light_clusters = static_cast<int>(std::count(light_cluster.begin(), light_cluster.end(), 1));
+    return found;
 }
 
 template <int D>
@@ -222,10 +245,8 @@ Matrix matrix_of(const Matrix& fine, const PhaseUnknowns<D>& unknowns, const Agg
     });
 }
 
-template Vec<2> mean_heavy_weight<2>(const Natural<2>&, const LightComponents&);
-template Vec<3> mean_heavy_weight<3>(const Natural<3>&, const LightComponents&);
-template Clusters clusters_of_cells<2>(const Natural<2>&, const PhaseUnknowns<2>&, const Vec<2>&);
-template Clusters clusters_of_cells<3>(const Natural<3>&, const PhaseUnknowns<3>&, const Vec<3>&);
+template PhaseCells<2> find_phase_cells<2>(const Natural<2>&, const std::uint8_t*);
+template PhaseCells<3> find_phase_cells<3>(const Natural<3>&, const std::uint8_t*);
 template Clusters clusters_of<2>(const Matrix&, const PhaseUnknowns<2>&, real);
 template Clusters clusters_of<3>(const Matrix&, const PhaseUnknowns<3>&, real);
 template Matrix matrix_of_cells<2>(const Natural<2>&, const Aggregation&, const std::array<bool, 2>&);

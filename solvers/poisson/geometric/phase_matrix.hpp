@@ -1,18 +1,24 @@
 // The first matrix of aggregates, and the next ones: weights between aggregates are half of the Galerkin sums along coarsened axes.
 #pragma once
 #include "poisson/geometric/level.hpp"
-#include "poisson/geometric/light_components.hpp"
 #include "poisson/geometric/phase_aggregates.hpp"
 
 namespace weir::poisson {
 
-/// The mean weight along each axis of faces between cells of the heavier phase, 0: none.
+/// The cells as unknowns, and their clusters.
 template <int D>
-Vec<D> mean_heavy_weight(const Natural<D>& problem, const LightComponents& light);
+struct PhaseCells {
+    PhaseUnknowns<D> unknowns;
+    Clusters clusters;
+    Vec<D> floor{};          // as in is_strong(), along each axis
+    int light_clusters = 0;  // with a weight of at least a quarter of the largest: bubbles, pieces of thin films, the gas above the liquid
+    std::size_t bytes() const { return unknowns.bytes() + clusters.bytes(); }
+};
 
-/// Clusters of cells, and of the unknowns of a matrix; `floor` as in is_strong(), along each axis of the cells.
+/// `light`: not 0 in cells of the lighter phase.
 template <int D>
-Clusters clusters_of_cells(const Natural<D>& problem, const PhaseUnknowns<D>& cells, const Vec<D>& floor);
+PhaseCells<D> find_phase_cells(const Natural<D>& problem, const std::uint8_t* light);
+/// Clusters of the unknowns of a matrix.
 template <int D>
 Clusters clusters_of(const Matrix& A, const PhaseUnknowns<D>& at, real floor);
 
