@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # two_phase_table.sh [BEFORE]: iterations and time of `multigrid` for all shapes of two phases, on one thread. BEFORE: a bench_poisson of an
-# earlier build, which is measured in turns with the present one. Times are setup and solve per unknown, the least of three runs. On one processor
+# earlier build, which is measured in turns with the present one. Times are setup and solve per unknown, the least of the runs. On one processor
 # with nothing beside, about four minutes. ROUNDS=1: one run each.
 set -euo pipefail
 root=$(realpath "$(dirname "$0")/../..")
@@ -11,7 +11,7 @@ rounds=${ROUNDS:-3}
 measure() { # label, program, arguments: label, shape, dim, n, iterations, ns per unknown of setup and solve
     local label=$1 program=$2
     shift 2
-    "$program" --threads 1 --csv --solver multigrid --repeat 1 "$@" | awk -F, -v label="$label" -v ratio="$ratio" '
+    "$program" --threads 1 --csv --solver multigrid --repeat 3 "$@" | awk -F, -v label="$label" -v ratio="$ratio" '
         /^[a-z]/ && $1 != "case" { unknowns = 1e6 * $7 / $10; print label, $1, $2, $3, ratio, $8, 1e6 * ($6 + $7) / unknowns }'
 }
 one_round() { # programs
@@ -33,11 +33,11 @@ one_round() { # programs
 } | awk -v earlier="${1:+1}" '
     function cell(label, grid,   key) {
         key = label SUBSEP name SUBSEP grid
-        return key in least ? sprintf("%d, %.0f", iterations[key], least[key]) : ""
+        return (key in least) ? sprintf("%d, %.0f", iterations[key], least[key]) : ""
     }
     {
         name = $2 " at " $5 ":1"; key = $1 SUBSEP name SUBSEP $3 "D " $4
-        if (!(name in known)) known[name] = 1, order[++count] = name
+        if (!(name in known)) { known[name] = 1; order[++count] = name }
         if (!(key in least) || $7 < least[key]) least[key] = $7
         iterations[key] = $6
     }
