@@ -80,7 +80,9 @@ Choice read_options(int argc, char** argv) {
         else if (key == "--obstacles")
             c.obstacles = true;
         else if (key == "--two-phase")
-            c.cases = {"uniform", "wave", "bubble", "drop", "dam", "drops", "bubbles", "film", "gas_film"};
+            c.cases = {
+                "uniform",           "wave",      "bubble",       "drop", "dam", "drops", "bubbles", "film", "gas_film", "inclined_film",
+                "gas_inclined_film", "ring_film", "gas_ring_film"};
         else if (key == "--pfmg-process")
             c.pfmg_process = true;
         else

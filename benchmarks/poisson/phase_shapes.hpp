@@ -39,6 +39,16 @@ real cloud(const Vec<D>& x) {
     return inside;
 }
 
+/// Distance from the midline of a film: level and shifted by a cell, inclined, or closed to a ring or shell.
+template <int D>
+bool film_distance(const std::string& film, const Vec<D>& x, const Vec<D>& from_centre, real h, real& distance) {
+    const real up = x[D - 1] - 0.5, along = x[0] - 0.5 + (D == 3 ? 0.5 * (x[1] - 0.5) : 0);
+    if (film == "level_film") return distance = up - 1.1 * h, true;
+    if (film == "inclined_film") return distance = (up - 0.3 * along) / std::sqrt(D == 3 ? 1.1125 : 1.09) - 0.3 * h, true;
+    if (film == "ring_film") return distance = norm(from_centre) - 0.31, true;
+    return false;
+}
+
 /// Positive in the liquid at x; h is the width of a cell. false for an unknown shape.
 template <int D>
 bool liquid_at(const std::string& shape, const Vec<D>& x, real h, real& depth) {
@@ -54,6 +64,9 @@ bool liquid_at(const std::string& shape, const Vec<D>& x, real h, real& depth) {
     if (shape == "bubbles") return depth = -cloud(x), true;
     if (shape == "film") return depth = h - std::abs(wave - up), true;
     if (shape == "gas_film") return depth = std::abs(wave - up) - h, true;
+    const bool gas = shape.starts_with("gas_");
+    if (real away; film_distance(gas ? shape.substr(4) : shape, x, from_centre, h, away))
+        return depth = gas ? std::abs(away) - h : h - std::abs(away), true;
     return false;
 }
 

@@ -125,9 +125,10 @@ Problem<D> make(const std::string& name, int n, real ratio) {
     else if (name == "bands")
         set_inner_weights(A, [&](const Index<D>& I, int a, std::size_t) { return banded_fraction(I, a, n); });
     else if (name != "box" && name != "wavy")
-        throw BadInput("unknown case \"" + name +
-                       "\"; known: box, wavy, box_weights, wavy_weights, rooms, slits, blocks, fractions, magnitudes, bands, "
-                       "uniform, wave, bubble, drop, dam, drops, bubbles, film, gas_film");
+        throw BadInput(
+            "unknown case \"" + name +
+            "\"; known: box, wavy, box_weights, wavy_weights, rooms, slits, blocks, fractions, magnitudes, bands, "
+            "uniform, wave, bubble, drop, dam, drops, bubbles, film, level_film, inclined_film, ring_film, and gas_ before a film");
     for (std::size_t i = 0; i < A.cells.size(); ++i) {
         if (A.cells[i] != Cell::fluid) problem.b[i] = 0;
         problem.unknowns += A.cells[i] == Cell::fluid;

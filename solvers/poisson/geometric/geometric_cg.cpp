@@ -12,12 +12,13 @@ constexpr real replace_counted = 1e-4, replace_weighted = 1e-3;
 /// Typical reduction of the residual per iteration.
 constexpr real usual_reduction = 0.1;
 
-/// Number of iterations before the convergence rate is judged, and the acceptable total (open water takes 7 to 12).
-constexpr int judged_from = 6, worth_while = 32;
+/// Number of iterations before the convergence rate is judged, and from which it is known well.
+constexpr int judged_from = 6, well_known_from = 12;
 
 /// Returns whether the tolerance takes more iterations than another method probably would.
-bool is_slow(const Report& report, real norm, real tolerance) {
+bool is_slow(const Report& report, real norm, real tolerance, const ExpectedIterations& most) {
     if (report.iterations < judged_from) return false;
+    const int worth_while = report.iterations < well_known_from ? most.early : most.late;
     const real digits_done = std::log(report.residual_before / norm), digits_wanted = std::log(report.residual_before / tolerance);
     return report.iterations * digits_wanted > worth_while * digits_done;
 }
@@ -245,7 +246,7 @@ bool GeometricCg<D>::iterate(const Natural<D>& problem, Grid<real, D>& p, const 
         }
         reduction = norm / before;
         stop.count(norm);
-        const bool gives_up = !options.fixed_iterations && is_slow(report, norm, options.tolerance);
+        const bool gives_up = !options.fixed_iterations && is_slow(report, norm, options.tolerance, most_);
         if (!replaces && (gives_up || norm <= factor * replaced || !stop.wants_more(norm))) {
             see_answer();
             norm = replaced = replaced_norm(false, [](int) {});

@@ -21,11 +21,18 @@
 
 namespace weir::poisson {
 
+/// The expected total of iterations above which another method is cheaper (open water takes 7 to 12): as the first iterations project it,
+/// and as later ones do.
+struct ExpectedIterations {
+    int early = 32, late = 32;
+};
+
 template <int D>
 class GeometricCg {
 public:
     /// Returns false if the problem's shape is not supported: no other function may be called then.
     bool setup(const Natural<D>& problem);
+    void give_up_above(const ExpectedIterations& most) { most_ = most; }
     /// Iterates on A p = b; fills the report except times, bytes and components. Returns false if it stopped because of slow convergence: p
     /// then contains the last iterate.
     bool solve(const Natural<D>& problem, Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);
@@ -74,6 +81,7 @@ private:
     Arena arena_;
     Coloured<double> x_{};
     Coloured<float> p_{};
+    ExpectedIterations most_;
     bool windowed_ = false;
     bool at_zero_ = false;  // x is zero, whatever its memory contains
     OwnPlanes own_{};       // of the problem

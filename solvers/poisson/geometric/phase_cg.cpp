@@ -13,12 +13,13 @@ constexpr int worth_while = 64;
 }  // namespace
 
 template <int D>
-void PhaseCg<D>::setup(const Natural<D>& problem, Hierarchy<D>& hierarchy, const LightComponents& light) {
+void PhaseCg<D>::setup(const Natural<D>& problem, Hierarchy<D>& hierarchy, const PhaseCells<D>& cells) {
     problem_ = &problem, hierarchy_ = &hierarchy;
-    coarse_.build(problem, light, hierarchy.levels());
-    const std::size_t cells = light.of.size();
-    for (Vector* v : {&r_, &p_, &Ap_, &zero_}) v->assign(cells, 0);
-    z_.assign(cells, 0);
+    coarse_.build(problem, cells, hierarchy.levels());
+    const std::size_t size = cells.unknowns.box.size();
+    for (Vector* v : {&r_, &p_, &Ap_, &zero_}) v->assign(size, 0);
+    z_.assign(size, 0);
+    for (Vector* v : {&rz_, &zAp_}) v->assign(static_cast<std::size_t>(problem.planes()), 0);
     number_red_cells();
 }
 
@@ -92,7 +93,10 @@ void PhaseCg<D>::smooth_up() {
             const auto row = static_cast<std::size_t>(at.row(q, j)), s = static_cast<std::size_t>(at.parity(q, j));
             const std::ptrdiff_t own = at.offset(at.row(q, j));
             if (stage == 5) {
-                if (!problem_->is_dry(at.row(q, j))) merge(finest.u[s] + own, finest.u[1 - s] + own, at.n[0], z_.data() + row * n);
+                if (!problem_->is_dry(at.row(q, j))) {
+                    merge(finest.u[s] + own, finest.u[1 - s] + own, at.n[0], z_.data() + row * n);
+                    add_products(static_cast<std::size_t>(q), row * n, n);
+                }
                 continue;
             }
             const int* unknown = unknown_.data() + row * width;
@@ -105,17 +109,23 @@ void PhaseCg<D>::smooth_up() {
     VCycle<D>::run(finest, VCycle<D>::wavefront(finest, 6, false), work, [](int) {});
 }
 
+/// Adds r·z and z·A p of a row to those of its plane.
+template <int D>
+void PhaseCg<D>::add_products(std::size_t plane, std::size_t first, std::size_t n) {
+    real rz = 0, zAp = 0;
+#pragma omp simd reduction(+ : rz, zAp)
+    for (std::size_t i = first; i < first + n; ++i) rz += r_[i] * z_[i], zAp += z_[i] * Ap_[i];
+    rz_[plane] += rz, zAp_[plane] += zAp;
+}
+
 template <int D>
 real PhaseCg<D>::precondition() {
+    std::fill(rz_.begin(), rz_.end(), 0.0);
+    std::fill(zAp_.begin(), zAp_.end(), 0.0);
     smooth_down();
     coarse_.apply();
     smooth_up();
-    return sum_of_rows([&](std::size_t first, std::size_t n) {
-        real sum = 0;
-#pragma omp simd reduction(+ : sum)
-        for (std::size_t i = first; i < first + n; ++i) sum += r_[i] * z_[i];
-        return sum;
-    });
+    return plane_sum(OwnPlanes(), problem_->planes(), [&](int q) { return rz_[static_cast<std::size_t>(q)]; });
 }
 
 template <int D>
@@ -130,13 +140,7 @@ void PhaseCg<D>::update_direction(real beta) {
 
 template <int D>
 real PhaseCg<D>::flexible_beta(const linear::Step& last) {
-    const real zAp = sum_of_rows([&](std::size_t first, std::size_t n) {
-        real sum = 0;
-#pragma omp simd reduction(+ : sum)
-        for (std::size_t i = first; i < first + n; ++i) sum += z_[i] * Ap_[i];
-        return sum;
-    });
-    return -zAp / last.pAp;
+    return -plane_sum(OwnPlanes(), problem_->planes(), [&](int q) { return zAp_[static_cast<std::size_t>(q)]; }) / last.pAp;
 }
 
 template <int D>

@@ -16,7 +16,7 @@ template <int D>
 class PhaseCg {
 public:
     /// Problem and hierarchy must outlive the solves, and store all planes on this rank.
-    void setup(const Natural<D>& problem, Hierarchy<D>& hierarchy, const LightComponents& light);
+    void setup(const Natural<D>& problem, Hierarchy<D>& hierarchy, const PhaseCells<D>& cells);
     /// Continues from p; adds to the report's iterations and history, and fills residual_after and residual_max. Returns false if it
     /// stopped before the tolerance: p is then the last iterate.
     bool solve(Grid<real, D>& p, const Grid<real, D>& b, const Options& options, Report& report);
@@ -35,6 +35,7 @@ private:
     void smooth_down();
     void smooth_up();
     void number_red_cells();
+    void add_products(std::size_t plane, std::size_t first, std::size_t n);
     /// The exact sum of f(first cell of a row, cells) over rows that contain fluid.
     template <class F>
     real sum_of_rows(F&& f) const;
@@ -46,6 +47,7 @@ private:
     std::vector<float> red_;    // residual of the red cells
     std::vector<float> z_;      // M r, in the order of the cells, like the following
     Vector r_, p_, Ap_, zero_;
+    Vector rz_, zAp_;  // r·z and z·A p of each plane
     Grid<real, D>* x_ = nullptr;
     real b_norm_ = 0;
 };

@@ -3,16 +3,40 @@
 // symmetric W(1,1): it takes half the iterations of a V-cycle where many components straddle the sides of coarse cells.
 #pragma once
 #include "poisson/geometric/level.hpp"
-#include "poisson/geometric/phase_aggregates.hpp"
+#include "poisson/geometric/phase_matrix.hpp"
 #include "poisson/matrix/sparse_cholesky.hpp"
 
 namespace weir::poisson {
+
+/// The rows of a matrix, of which the entries before and behind the diagonal are summed apart.
+class SplitRows {
+public:
+    SplitRows() = default;
+    explicit SplitRows(const Matrix& A);
+    /// Σ w x over earlier and over later unknowns than i.
+    real earlier(const Vector& x, std::size_t i) const { return sum(x, start_[i], middle_[i]); }
+    real later(const Vector& x, std::size_t i) const { return sum(x, middle_[i], start_[i + 1]); }
+    std::size_t bytes() const {
+        return (start_.capacity() + middle_.capacity() + column_.capacity()) * sizeof(int) + weight_.capacity() * sizeof(float);
+    }
+
+private:
+    real sum(const Vector& x, int begin, int end) const {
+        real sum = 0;
+        for (int k = begin; k < end; ++k)
+            sum +=
+                static_cast<real>(weight_[static_cast<std::size_t>(k)]) * x[static_cast<std::size_t>(column_[static_cast<std::size_t>(k)])];
+        return sum;
+    }
+    std::vector<int> start_{0}, middle_, column_;
+    std::vector<float> weight_;
+};
 
 template <int D>
 class PhaseCycle {
 public:
     /// `plan`: the levels of the geometric hierarchy, whose coarsened axes these levels share.
-    void build(const Natural<D>& problem, const LightComponents& light, const std::vector<Level<D>>& plan);
+    void build(const Natural<D>& problem, const PhaseCells<D>& cells, const std::vector<Level<D>>& plan);
     /// The unknown of each cell, −1 outside fluid.
     const std::vector<int>& of_cells() const { return of_cells_.of; }
     /// Right-hand side of the first level, which the caller fills, and the result of apply().
@@ -30,11 +54,12 @@ private:
         PhaseUnknowns<D> unknowns;
         Matrix A;
         Aggregation groups;  // to the next level
+        SplitRows rows;      // of A
         Vector inverse;      // of the diagonal
-        Vector x, b;
+        Vector x, b, later;  // later: Σ w x over later unknowns, as it was before the upward sweep
+        void sweep_up();
+        void sweep_down();
     };
-    void build_first(const Natural<D>& problem, const LightComponents& light, const Level<D>& finest);
-    CoarseLevel below(CoarseLevel& fine, const LightComponents& light, const Level<D>& plan) const;
     void cycle(std::size_t l);
     void correct(std::size_t l);
     void solve_coarsest();

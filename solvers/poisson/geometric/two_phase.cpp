@@ -4,37 +4,38 @@ namespace weir::poisson {
 
 namespace {
 
-/// Components of the lighter phase from which the geometric cycle is not tried. Each is one small eigenvalue, which conjugate gradients
+/// Clusters of the lighter phase from which the geometric cycle is not tried. Each is one small eigenvalue, which conjugate gradients
 /// remove in about one iteration.
 constexpr int cloud = 12;
 
 }  // namespace
 
 template <int D>
-void TwoPhase<D>::setup(const Operator<D>& A, bool distributed) {
+void TwoPhase<D>::setup(const Operator<D>& A, const Natural<D>& problem) {
     ready_ = false;
-    distributed_ = distributed;
-    two_phases_ = !A.light.empty();
+    distributed_ = problem.own().distributed();
+    two_phases_ = !A.light.empty() && !A.weight[0].empty();
     if (!two_phases_) return;
+    if (!distributed_) {
+        cells_ = find_phase_cells(problem, A.light.data());
+        return;
+    }
     Grid<std::uint8_t, D> light = A.light;
-    for_each_held(light, Index<D>{}, light.extent(), [&](const Index<D>& I) { light(I) = light(I) != 0 && A.cells(I) == Cell::fluid; });
-    if (distributed) gather(light);
-    find_light_components<D>(light, A.periodic, light_);
+    gather(light);
+    whole_.build(problem.as_operator(), OwnPlanes());
+    cells_ = find_phase_cells(whole_, light.data());
 }
 
 template <int D>
 bool TwoPhase<D>::is_cloud() const {
-    return two_phases_ && light_.count() >= cloud;
+    return two_phases_ && cells_.light_clusters >= cloud;
 }
 
 template <int D>
 void TwoPhase<D>::prepare(const Natural<D>& problem, Hierarchy<D>& hierarchy) {
     if (ready_) return;
-    if (distributed_) {
-        whole_.build(problem.as_operator(), OwnPlanes());
-        whole_hierarchy_.build(whole_);
-    }
-    cg_.setup(distributed_ ? whole_ : problem, distributed_ ? whole_hierarchy_ : hierarchy, light_);
+    if (distributed_) whole_hierarchy_.build(whole_);
+    cg_.setup(distributed_ ? whole_ : problem, distributed_ ? whole_hierarchy_ : hierarchy, cells_);
     ready_ = true;
 }
 
@@ -51,7 +52,7 @@ bool TwoPhase<D>::solve(Grid<real, D>& p, const Grid<real, D>& b, const Options&
 
 template <int D>
 std::size_t TwoPhase<D>::bytes() const {
-    return two_phases_ ? light_.bytes() + (ready_ ? whole_.bytes() + whole_hierarchy_.bytes() + cg_.bytes() : 0) : 0;
+    return two_phases_ ? cells_.bytes() + whole_.bytes() + (ready_ ? whole_hierarchy_.bytes() + cg_.bytes() : 0) : 0;
 }
 
 template class TwoPhase<2>;

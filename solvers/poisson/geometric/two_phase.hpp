@@ -7,11 +7,12 @@ namespace weir::poisson {
 template <int D>
 class TwoPhase {
 public:
-    /// Reads the phases of an operator; none where A.light is empty.
-    void setup(const Operator<D>& A, bool distributed);
+    /// Reads the phases of an operator; none where A.light is empty. In parallel, all ranks find the clusters of all planes.
+    void setup(const Operator<D>& A, const Natural<D>& problem);
     /// Returns whether the matrix has two phases.
     bool any() const { return two_phases_; }
-    /// Returns whether the lighter phase is a cloud: so many components that the geometric cycle would be slow.
+    /// Returns whether the lighter phase is a cloud: so many clusters that the geometric cycle would be slow. Bubbles are, and a thin film
+    /// that is not level.
     bool is_cloud() const;
     /// Builds the aggregates by phase, once after each setup(); in parallel, replicated on each rank.
     void prepare(const Natural<D>& problem, Hierarchy<D>& hierarchy);
@@ -21,7 +22,7 @@ public:
 
 private:
     bool two_phases_ = false, ready_ = false, distributed_ = false;
-    LightComponents light_;
+    PhaseCells<D> cells_;
     Natural<D> whole_;  // in parallel: all planes
     Hierarchy<D> whole_hierarchy_;
     PhaseCg<D> cg_;
