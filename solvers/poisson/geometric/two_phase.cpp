@@ -24,6 +24,7 @@ void TwoPhase<D>::setup(const Operator<D>& A, const Natural<D>& problem) {
     gather(light);
     whole_.build(problem.as_operator(), OwnPlanes());
     cells_ = find_phase_cells(whole_, light.data());
+    if (!is_cloud()) whole_ = {};  // rarely needed again
 }
 
 template <int D>
@@ -34,7 +35,10 @@ bool TwoPhase<D>::is_cloud() const {
 template <int D>
 void TwoPhase<D>::prepare(const Natural<D>& problem, Hierarchy<D>& hierarchy) {
     if (ready_) return;
-    if (distributed_) whole_hierarchy_.build(whole_);
+    if (distributed_) {
+        if (!is_cloud()) whole_.build(problem.as_operator(), OwnPlanes());
+        whole_hierarchy_.build(whole_);
+    }
     cg_.setup(distributed_ ? whole_ : problem, distributed_ ? whole_hierarchy_ : hierarchy, cells_);
     ready_ = true;
 }

@@ -23,7 +23,7 @@ public:
 private:
     bool two_phases_ = false, ready_ = false, distributed_ = false;
     PhaseCells<D> cells_;
-    Natural<D> whole_;  // in parallel: all planes
+    Natural<D> whole_;  // in parallel: all planes; empty while the geometric cycle solves
     Hierarchy<D> whole_hierarchy_;
     PhaseCg<D> cg_;
 };
