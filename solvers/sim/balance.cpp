@@ -133,6 +133,17 @@ void warn_of_energy(const Balanced& b, std::vector<std::string>& warnings) {
                     percent(*b.unexplained), b.start, b.unit, *b.highest, b.unit));
 }
 
+/// What keeps the volume beside moving solids is taken from the whole surface, that of trapped gas too.
+void warn_of_corrections(const std::vector<Integral>& corrected, const std::vector<Integral>& end, std::vector<std::string>& warnings) {
+    const Integral* moved = find(corrected, "volume_corrections");
+    const real volume = value_or_zero(end, "volume");
+    if (!moved || !(moved->value > tolerated * volume)) return;
+    warnings.push_back(
+        fmt::format("{} of the liquid was moved along its whole surface to keep the volume beside moving solids ({:.4g} {}): "
+                    "trapped gas may have changed by a part of that; refine the grid",
+                    percent(moved->value / volume), moved->value, moved->unit));
+}
+
 /// Pockets of enclosed air.
 std::vector<Integral> enclosed_air(const std::vector<Integral>& end) {
     std::vector<Integral> list;
@@ -144,8 +155,8 @@ std::vector<Integral> enclosed_air(const std::vector<Integral>& end) {
 /// Corrections applied to the fluid, counted since the start.
 std::vector<Integral> corrections(const std::vector<Integral>& start, const std::vector<Integral>& end) {
     std::vector<Integral> list;
-    for (const char* name :
-         {"escaped_markers", "reseeded_markers", "clamped", "raised_depth", "volume_shift", "smoke_removed", "smoke_continued"})
+    for (const char* name : {"escaped_markers", "reseeded_markers", "clamped", "raised_depth", "volume_shift", "volume_corrections",
+                             "smoke_removed", "smoke_continued"})
         if (const Integral* now = find(end, name)) list.push_back({name, now->unit, now->value - value_or_zero(start, name)});
     return list;
 }
@@ -265,6 +276,7 @@ BalanceOfRun Balance::of_run(const Simulation& simulation) const {
     }
     for (const char* name : {"total_smoke", "total_tracer"})
         if (auto b = balanced(name, start_, end)) run.quantities.push_back(std::move(*b));
+    warn_of_corrections(run.corrected, end, run.warnings);
     if (!find(end, "particles")) run.thin = thin_solids(scene, grid);
     return run;
 }

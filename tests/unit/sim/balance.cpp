@@ -134,6 +134,20 @@ TEST("energy that comes and goes between two frames is seen if it stays for 16 s
     EXPECT_LT(steps, 12);  // of about a hundred steps
 }
 
+// 2% of the volume in one second; 1% is the bound of all quantities.
+TEST("a volume that is kept by corrections beside moving solids says how much they moved") {
+    const auto moved = [](real rate) {
+        return [rate](real t) -> std::vector<Integral> { return {{"volume", "m^2", 0.5}, {"volume_corrections", "m^2", rate * t}}; };
+    };
+    const BalanceOfRun much = balance(moved(0.01)), little = balance(moved(0.004));
+    ASSERT_EQ(much.corrected.size(), 1);
+    EXPECT_EQ(much.corrected[0].name, "volume_corrections");
+    EXPECT_NEAR(much.corrected[0].value, 0.01, 1e-12);
+    ASSERT_EQ(much.warnings.size(), 1);
+    EXPECT_EQ(much.warnings[0].find("2% of the liquid was moved along its whole surface"), 0) << much.warnings[0];
+    EXPECT_TRUE(little.warnings.empty());
+}
+
 TEST("heat is balanced against what was added to it") {
     const auto heat = [](real lost) {
         return [lost](real t) { return std::vector<Integral>{{"heat", "J/m", 100 + (50 - lost) * t}, {"heat_added", "J/m", 50 * t}}; };
