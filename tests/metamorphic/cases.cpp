@@ -16,8 +16,6 @@ using namespace weir::metamorphic;
 
 namespace {
 
-constexpr int steps = 10;
-
 struct Count {
     int equal = 0, alike = 0, open = 0, violated = 0;
     std::map<std::string, int> skipped;  // by reason

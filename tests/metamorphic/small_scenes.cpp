@@ -56,7 +56,7 @@ void coarsen(Table& root) {
     grid.set("cells", n, {1, 1}), grid.set("size", size, {1, 1});
 }
 
-scene::Scene without_output(const scene::Scene& scene, bool coarse) {
+scene::Scene without_output(const scene::Scene& scene, bool coarse, real tolerance) {
     Table root = scene.root();
     root.set("probes", std::vector<Table>{}), root.set("title", std::string());
     if (Table* output = root.find_table("output"))
@@ -71,14 +71,14 @@ scene::Scene without_output(const scene::Scene& scene, bool coarse) {
     if (coarse) coarsen(root);
     // Two runs are compared more closely than the usual tolerance of the pressure leaves them.
     if (root.has("scheme.poisson.fixed") && !root.flag("scheme.poisson.fixed"))
-        root.find_table("scheme.poisson")->set("tolerance", 1e-12, {1, 1});
+        root.find_table("scheme.poisson")->set("tolerance", tolerance, {1, 1});
     return scene_of_table(root, scene.file());
 }
 
 bool runs(const scene::Scene& scene) {
     try {
         Simulation simulation(scene);
-        simulation.step();
+        for (int step = 0; step < steps; ++step) simulation.step();
         return true;
     } catch (const std::exception&) {
         return false;
@@ -91,7 +91,9 @@ std::vector<NamedScene> small_scenes(const std::filesystem::path& cases) {
     std::vector<NamedScene> list;
     const auto add = [&](const std::string& name, const scene::Scene& scene) {
         for (const bool coarse : {true, false})
-            if (scene::Scene small = without_output(scene, coarse); runs(small)) return list.push_back({name, std::move(small)});
+            for (const real tolerance : {1e-12, 1e-10})  // the first is below round-off where the matrix is worse than 1000:1
+                if (scene::Scene small = without_output(scene, coarse, tolerance); runs(small))
+                    return list.push_back({name, std::move(small)});
     };
     std::vector<std::filesystem::path> folders;
     for (const auto& entry : std::filesystem::directory_iterator(cases))

@@ -8,6 +8,9 @@
 
 namespace weir::metamorphic {
 
+/// The steps that are compared.
+inline constexpr int steps = 10;
+
 struct NamedScene {
     std::string name;  // "dam_break_2d", "standing_wave/flip"
     scene::Scene scene;

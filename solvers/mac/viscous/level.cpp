@@ -29,7 +29,7 @@ std::size_t Level<D>::unknowns() const {
 
 template <int D>
 std::size_t Level<D>::bytes() const {
-    std::size_t total = 0;
+    std::size_t total = stiff_edges.capacity() * sizeof(StiffEdge);
     for (const auto& mu_at : shear) total += mu_at.bytes();
     for (const Faces<D>* faces : {&mass, &inverse, &mu, &x, &other, &b})
         for (const auto& field : faces->component) total += field.bytes();

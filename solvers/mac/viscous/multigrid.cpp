@@ -168,8 +168,8 @@ void Multigrid<D>::solve_coarsest() {
 
 template <int D>
 std::size_t Multigrid<D>::bytes() const {
-    std::size_t total = (factor_.capacity() + solution_.capacity()) * sizeof(real);
-    for (const Level<D>& level : levels_) total += level.bytes() + sizeof(level);
+    std::size_t total = (factor_.capacity() + solution_.capacity()) * sizeof(real) + levels_.capacity() * sizeof(Level<D>);
+    for (const Level<D>& level : levels_) total += level.bytes();
     return total;
 }
 
