@@ -95,11 +95,15 @@ int ClusterFinder::root(int i) {
     return i;
 }
 
-/// A root is the smallest index of its cluster.
+/// A root is the smallest index of its cluster. An unknown in no pair yet takes the root of a lower one: faces that come by rising i and
+/// falling axis then mostly find both sides with one parent.
 void ClusterFinder::join(int i, int j) {
-    for (const int k : {i, j})
-        if (int& own = parent_[static_cast<std::size_t>(k)]; own < 0) own = k;
-    const int a = root(i), b = root(j);
+    int &one = parent_[static_cast<std::size_t>(std::max(i, j))], &other = parent_[static_cast<std::size_t>(std::min(i, j))];
+    if (one >= 0 && one == other) return;
+    if (other < 0) other = std::min(i, j);
+    const int b = root(std::min(i, j));
+    if (one < 0) return void(one = b);
+    const int a = root(std::max(i, j));
     parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
 }
 
@@ -108,10 +112,17 @@ Clusters ClusterFinder::find(const PhaseUnknowns<D>& at) {
     Clusters found;
     found.of.assign(parent_.size(), -1);
     std::vector<Index<D>> low, high;
+    Index<D> I{};
+    int box = 0;  // of I
     for (std::size_t i = 0; i < parent_.size(); ++i) {
         if (parent_[i] < 0) continue;
         const auto r = static_cast<std::size_t>(root(static_cast<int>(i)));
-        const Index<D> I = index_of<D>(at.box[i], at.boxes);
+        const bool next = at.box[i] == box + 1 && I[0] + 1 < at.boxes[0];
+        box = at.box[i];
+        if (next)
+            ++I[0];
+        else
+            I = index_of<D>(box, at.boxes);
         if (r == i) found.of[i] = static_cast<int>(low.size()), low.push_back(I), high.push_back(I);
         const int c = found.of[i] = found.of[r];
         for (int a = 0; a < D; ++a) {

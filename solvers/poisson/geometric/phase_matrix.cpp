@@ -65,13 +65,13 @@ private:
     Index<D> n_;
 };
 
-/// f(row, q, j, axis) for each row of cells and the lower faces of an axis; `below`: the row of the cells on the other side of these faces
-/// (along x the same row), which are not outside.
+/// f(row, below, axis, weights) for each row of cells and its lower faces along each axis, the last axis first; `below`: the row of the
+/// cells on the other side of these faces (along x the same row), which are not outside.
 template <int D, class F>
 void for_each_row_of_faces(const Natural<D>& problem, F&& f) {
     for (int q = 0; q < problem.planes(); ++q)
         for (int j = 0; j < problem.rows_in_plane(); ++j)
-            for (int a = 0; a < D; ++a) {
+            for (int a = D - 1; a >= 0; --a) {
                 const int row = problem.row(q, j), below = a == 0 ? row : problem.neighbour(q, j, a, 0);
                 if (below >= 0 && !problem.is_dry(row)) f(row, below, a, problem.faces(a, q, j));
             }
