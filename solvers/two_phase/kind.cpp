@@ -110,9 +110,8 @@ scene::SolverKind kind() {
     schema.effects = effect_schemas();
     schema.without = {"emitters", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "initial.temperature", "initial.smoke"};
     schema.why_without =
-        "this solver has walls, inflows, p = 0 on open sides, periodic axes and solids, at rest or in a prescribed motion; \"mac_water\" "
-        "has "
-        "bodies, emitters and heat";
+        "this solver has walls, inflows, p = 0 on open sides, periodic axes and solids, at rest or in a prescribed motion; "
+        "\"mac_water\" has bodies, emitters and heat";
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},

@@ -12,14 +12,6 @@ using two_phase::TwoPhase;
 
 namespace {
 
-template <int D>
-bool same_bits(const TwoPhase<D>& one, const TwoPhase<D>& other) {
-    const auto same = [](const auto& a, const auto& b) { return std::equal(a.values().begin(), a.values().end(), b.values().begin()); };
-    bool all = same(one.fraction(), other.fraction()) && same(one.state().p, other.state().p);
-    for (int a = 0; a < D; ++a) all = all && same(one.state().u[a], other.state().u[a]);
-    return all;
-}
-
 /// The largest difference of fractions between a solver and another one whose cell `to(I)` is cell I of the first.
 template <int D, class F>
 real difference(const TwoPhase<D>& one, const TwoPhase<D>& other, F&& to) {

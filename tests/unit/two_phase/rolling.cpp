@@ -1,6 +1,6 @@
 // A tank that rolls: vorticity in the laboratory is kept, so that seen from the tank it is −2 (Ω(t) − Ω(0)) everywhere.
-#include "geometry/rotating_frame.hpp"
 #include "support.hpp"
+#include "support/inner_vorticity.hpp"
 
 namespace rolling_tests {
 
@@ -26,23 +26,6 @@ effects.rotating_frame = {{ centre = {}, axis = "{}", amplitude = 0.3, period = 
                                        D, list({"16", "12", "10"}, D), list({"0.8", "0.6", "0.5"}, D), list({"-1.0", "-1.0", "-1.0"}, D),
                                        list({"2.0", "0.31", "2.0"}, D), list({"0.0", "-9.81", "0.0"}, D), list({"0.1", "0.2", "0.9"}, D),
                                        axis));
-}
-
-/// Mean vorticity about the axis on edges of the inner half.
-template <int D>
-real inner_vorticity(const mac::MacVelocity<D>& u, const geometry::RotatingFrame<D>& frame) {
-    const int p = frame.p(), q = frame.q();
-    real sum = 0;
-    int count = 0;
-    for (std::size_t at = 0; at < product(u.cells); ++at) {
-        const Index<D> I = mac::index_of<D>(u.cells, at);
-        bool inner = true;
-        for (int a = 0; a < D; ++a) inner = inner && 4 * I[a] >= u.cells[a] && 4 * I[a] <= 3 * u.cells[a];
-        if (!inner) continue;
-        sum += (u[q](I) - u[q](I - e<D>(p))) / u.h[p] - (u[p](I) - u[p](I - e<D>(q))) / u.h[q];
-        ++count;
-    }
-    return sum / count;
 }
 
 }  // namespace

@@ -79,4 +79,33 @@ real max_speed(const two_phase::TwoPhase<D>& solver) {
     return most;
 }
 
+template <int D>
+bool same_bits(const two_phase::TwoPhase<D>& one, const two_phase::TwoPhase<D>& other) {
+    const auto same = [](const auto& a, const auto& b) { return std::equal(a.values().begin(), a.values().end(), b.values().begin()); };
+    bool all = same(one.fraction(), other.fraction()) && same(one.state().p, other.state().p);
+    for (int a = 0; a < D; ++a) all = all && same(one.state().u[a], other.state().u[a]);
+    return all;
+}
+
+/// The same bits by one thread, by three, and by a run that is restored after `before` of all steps.
+template <int D>
+void expect_reproducible(const scene::Scene& scene, int before, int after) {
+    two_phase::TwoPhase<D> one(scene), three(scene), second(scene);
+    set_threads(1);
+    run(one, before);
+    Checkpoint checkpoint;
+    one.save(checkpoint);
+    run(one, after);
+    second.restore(checkpoint);
+    run(second, after);
+    set_threads(3);
+    run(three, before + after);
+    set_threads(1);
+    for (const two_phase::TwoPhase<D>* other : {&three, &second}) {
+        EXPECT_TRUE(same_bits(one, *other));
+        const auto of_one = one.integrals(), of_other = other->integrals();
+        for (std::size_t i = 0; i < of_one.size(); ++i) EXPECT_EQ(of_one[i].value, of_other[i].value) << of_one[i].name;
+    }
+}
+
 }  // namespace weir::test
