@@ -64,7 +64,12 @@ Key start_keys() {
     return initial;
 }
 
-/// What enters through each side of kind "inflow".
+Key entering_key(std::string doc, std::string fallback) {
+    return {.name = "fluid", .type = Type::choice, .doc = std::move(doc), .fallback = std::move(fallback), .choices = {"liquid", "gas"}};
+}
+constexpr const char* of_open_sides = "What stands outside: it enters where the flow is inwards.";
+
+/// What enters through each inflow and open side.
 Key side_keys() {
     Key sides{.name = "sides", .type = Type::table};
     for (const std::string axis : {"x", "y", "z"})
@@ -72,13 +77,9 @@ Key side_keys() {
             sides.keys.push_back({.name = axis + end,
                                   .type = Type::table,
                                   .selector = "kind",
-                                  .variants = {{"inflow",
-                                                "",
-                                                {{.name = "fluid",
-                                                  .type = Type::choice,
-                                                  .doc = "What enters.",
-                                                  .fallback = std::string("liquid"),
-                                                  .choices = {"liquid", "gas"}}}}}});
+                                  .variants = {{"inflow", "", {entering_key("What enters.", "liquid")}},
+                                               {"outflow", "", {entering_key(of_open_sides, "gas")}},
+                                               {"open", "", {entering_key(of_open_sides, "gas")}}}});
     return sides;
 }
 

@@ -45,12 +45,13 @@ geometry::Sides<D> frictionless(geometry::Sides<D> sides) {
     return sides;
 }
 
+/// The fractions of what enters through sides of one kind.
 template <int D>
-EnteringFractions<D> entering_fractions(const scene::Scene& scene, const geometry::Sides<D>& sides) {
+EnteringFractions<D> entering_fractions(const scene::Scene& scene, const geometry::Sides<D>& sides, geometry::SideKind kind) {
     EnteringFractions<D> entering;
     for (int a = 0; a < D; ++a)
         for (const int end : {0, 1})
-            if (sides.side(a, end).kind == geometry::SideKind::inflow)
+            if (sides.side(a, end).kind == kind)
                 entering[static_cast<std::size_t>(a)][static_cast<std::size_t>(end)] =
                     scene.root().table(scene::side_key(a, end)).text("fluid") == "liquid" ? 1 : 0;
     return entering;
@@ -64,14 +65,14 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition& partition, con
       experiment_(experiment),
       state_(scene, two_phase::fields(), slab_of<D>(scene, partition, planes_beside)),
       solids_(geometry::Solids<D>(scene), state_),
-      entering_(entering_fractions<D>(scene, state_.sides)),
+      entering_(entering_fractions<D>(scene, state_.sides, geometry::SideKind::inflow)),
       ghosts_of_fraction_(state_.sides, -1, entering_),
       around_(state_.sides, state_.u.cells),
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
       brush_forcing_(geometry::make_brush(scene, {BrushKind::push, BrushKind::pull})),
       gravity_(free_surface::gravity_of<D>(scene)),
       up_(free_surface::up_axis<D>(gravity_)),
-      transport_(state_, entering_),
+      transport_(state_, entering_, entering_fractions<D>(scene, state_.sides, geometry::SideKind::outflow)),
       fraction_ghosts_(state_.extent()),
       projection_(options_.poisson, state_) {
     refuse_sides(scene);

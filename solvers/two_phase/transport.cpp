@@ -16,9 +16,10 @@ std::array<int, D> sweep_order(std::int64_t step) {
 }
 
 template <int D>
-Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& entering)
+Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& entering, const EnteringFractions<D>& returning)
     : spacing_(state.u.h),
       sides_(state.sides),
+      returning_(returning),
       cell_ghosts_(state.sides, -1, entering),
       velocity_(state.u),
       liquid_flux_(state.u.cells + Index<D>::constant(2), 0, 1),
@@ -158,6 +159,20 @@ void Transport<D>::Volumes::find_dilation(int number, const Index<D>& first, int
     for (int k = 0; k < number; ++k) add_dilation(axis(k), first, count, -1, dilation);
 }
 
+/// What flows in through an open side along axis d is not what stands beside it within: a wave that touches an open top would draw liquid
+/// from outside. The volumes of faces on the side itself are half outside; they keep their mirrored ghosts.
+template <int D>
+void Transport<D>::set_returning(const Volumes& v, int d, const Index<D>& first, int count, const real* C, real* F) const {
+    if (v.component == d) return;
+    for (const int end : {0, 1}) {
+        const auto& fraction = returning_[static_cast<std::size_t>(d)][static_cast<std::size_t>(end)];
+        const int side = end == 0 ? 0 : v.f.extent()[d], inwards = end == 0 ? 1 : -1;
+        if (!fraction) continue;
+        for (int i = 0; i < count; ++i)
+            if ((d == 0 ? first[0] + i : first[d]) == side && inwards * C[i] > 0) F[i] = *fraction * C[i];
+    }
+}
+
 /// Through the lower face of every volume along axis d.
 template <int D>
 void Transport<D>::find_fluxes(const Volumes& v, int d) {
@@ -175,6 +190,7 @@ void Transport<D>::find_fluxes(const Volumes& v, int d) {
                 const real* donor = f + i - (C[i] > 0 ? by : 0);
                 if (is_mixed(*donor) && C[i] != 0) F[i] = C[i] * fraction_of_slab<D>(donor, stride, d, C[i] > 0 ? 1 : 0, std::abs(C[i]));
             }
+        set_returning(v, d, first, count, C, F);
         if (v.q) find_momentum_fluxes(v.rho, f, v.q->at(first), by, C, F, count, &momentum_flux_(first));
     });
 }

@@ -35,7 +35,8 @@ struct Motion {
 template <int D>
 class Transport {
 public:
-    Transport(const MacState<D>& state, const EnteringFractions<D>& entering);
+    /// `entering`: through inflows; `returning`: through open sides where the flow is inwards.
+    Transport(const MacState<D>& state, const EnteringFractions<D>& entering, const EnteringFractions<D>& returning);
     /// Advects the fractions of cells. Returns the liquid that came in through open sides and inflows, less what left [cells]. `padded`: f
     /// with its ghosts; it is changed.
     real advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f);
@@ -67,12 +68,14 @@ private:
     real run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
     real inflow(const Extent<D>& cells, int d) const;
     void find_fluxes(const Volumes& v, int d);
+    void set_returning(const Volumes& v, int d, const Index<D>& first, int count, const real* C, real* F) const;
     void add_fluxes(const Volumes& v, int number);
 
     Vec<D> per_cell(real dt) const;
 
     Vec<D> spacing_{};  // [m]
     geometry::Sides<D> sides_;
+    EnteringFractions<D> returning_;
     FractionGhosts<D> cell_ghosts_;
     std::array<FractionGhosts<D>, D> face_ghosts_;
     std::array<Padded<D>, D> face_fraction_;

@@ -192,7 +192,8 @@ std::map<std::string, Said> everything() {
             Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]", "time.cfl = 0.4",
                   "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
                   "gas = { density = 0.1, viscosity = 1 }\neffects.viscosity = {}\nfluid.viscosity = 1", "initial.liquid_velocity = [1, 0]",
-                  rolls, hand, inflow + ", fluid = \"gas\" }, x_max = \"outflow\" }"}),
+                  rolls, hand, inflow + ", fluid = \"gas\" }, x_max = \"outflow\" }",
+                  "sides = { x_min = { kind = \"outflow\", fluid = \"liquid\" }, x_max = { kind = \"open\", fluid = \"gas\" } }"}),
         Lines{inflow + " } }"}};
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},

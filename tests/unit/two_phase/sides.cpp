@@ -106,4 +106,31 @@ TEST("an inflow without an open side is refused") {
     }
 }
 
+// The column sinks by g t²/2 · (its share), some 5% of its height in 0.15 s, away from the open top that it touches at the start.
+TEST_IN_2D_AND_3D("a column that sinks from an open top draws gas after it, or liquid where the scene says that liquid stands outside") {
+    const auto scene_of = [](const std::string& top) {
+        return two_phase_scene(fmt::format(R"(solver = "two_phase"
+dim = {}
+grid = {{ cells = {}, size = {} }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1000.0 }}
+gas = {{ density = 1.0 }}
+liquid = [ {{ shape = "box", min = {}, max = {} }} ]
+sides.y_max = {}
+effects.gravity.g = {}
+)",
+                                           D, list({"16", "16", "8"}, D), list({"1.0", "1.0", "0.5"}, D), list({"0.5", "-1.0", "-1.0"}, D),
+                                           list({"2.0", "2.0", "2.0"}, D), top, list({"0.0", "-9.81", "0.0"}, D)));
+    };
+    const auto change = [&](const std::string& top) {
+        TwoPhase<D> solver(scene_of(top));
+        const real before = integral(solver, "volume");
+        while (solver.time() < 0.15) solver.step(solver.advised_dt());
+        EXPECT_NEAR(integral(solver, "volume") - integral(solver, "poured_volume"), before, 1e-14) << top;
+        return integral(solver, "volume") / before - 1;
+    };
+    EXPECT_LT(change("\"outflow\""), 1e-14);
+    EXPECT_GT(change("{ kind = \"outflow\", fluid = \"liquid\" }"), 0.01);
+}
+
 }  // namespace side_tests

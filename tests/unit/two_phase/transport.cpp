@@ -48,7 +48,7 @@ TEST("a component that is uniform stays uniform in a flow that varies across it"
     state.u[2].fill(1);
     mac::PaddedVelocity<3> u(state.u);
     for (int a = 0; a < 3; ++a) fill(u[a], state.u[a], state.boundary[static_cast<std::size_t>(a)]);
-    two_phase::Transport<3> transport(state, {});
+    two_phase::Transport<3> transport(state, {}, {});
     for (int step = 0; step < 6; ++step)
         transport.advect_momentum(2, {u, u, 0.02, two_phase::sweep_order<3>(step)}, solver.face_fractions()[2], state.boundary[2],
                                   {1000, 1}, state.u[2]);
