@@ -57,8 +57,9 @@ struct Hollow {
     Vec<2> low, high;
     explicit Hollow(const scene::Scene& scene) {
         const scene::Table& block = scene.root().tables("solids").at(0);
-        const scene::Table& inside = block.tables("minus").back();
-        low = inside.vec<2>("min"), high = inside.vec<2>("max");
+        const auto& boxes = block.tables("minus");
+        const scene::Table& inside = boxes.at(boxes.size() - 1);  // throws where there is none
+        for (std::size_t a = 0; a < 2; ++a) low[a] = inside.numbers("min").at(a), high[a] = inside.numbers("max").at(a);
         low[1] = block.table("from").numbers("min").at(1);
     }
     bool contains(const Vec<3>& x) const { return x[0] > low[0] && x[0] < high[0] && x[1] > low[1] && x[1] < high[1]; }
@@ -101,7 +102,7 @@ real closing_error(const RunRecord& run, const Reference& ref) {
 /// Discharge coefficient of the hole of a bell, the first of the boxes that its solid lacks: gas that leaves the bell over w ∫ sqrt(2 Δp/ρ)
 /// dt, in the middle half of the run. Pressures are those of the probes `roof` and `outside`, in gas at one height.
 real discharge(const RunRecord& run, const Reference&) {
-    const scene::Table& hole = run.scene->root().tables("solids").at(0).tables("minus").front();
+    const scene::Table& hole = run.scene->root().tables("solids").at(0).tables("minus").at(0);
     const Hollow bell(*run.scene);
     const real width = hole.numbers("max").at(0) - hole.numbers("min").at(0), rho = run.scene->number("gas.density");
     const Curve air = run.series("bell.discharge"), inside = run.series("probe.roof"), outside = run.series("probe.outside");
