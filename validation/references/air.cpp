@@ -1,6 +1,7 @@
-// Enclosed air: a column of water on a cushion of gas, and a glass upside down under water.
+// Enclosed air: a column of water on a cushion of gas, a glass upside down under water, and air that a bore traps.
 #include "validation/harness/fitting.hpp"
 #include "validation/harness/reference.hpp"
+#include "validation/references/bore.hpp"
 
 #include <cmath>
 
@@ -75,5 +76,21 @@ REFERENCE(glass) {
     }
     Reference ref{.source = p0 > 0 ? "Boyle-Mariotte and hydrostatics (exact)" : "incompressible gas (exact)"};
     ref.numbers = {{"start", width * height}, {"volume", width * (height - (p0 > 0 ? low : 0))}};
+    return ref;
+}
+
+// A bore meets a block at its right with a hollow above the water: the first solid, a box less boxes, the last of which is the hollow. The
+// air in it is closed by the bore, and its pressure is the head of the reflected bore above the water inside, between pool and lip.
+REFERENCE(closed_hollow) {
+    const Dam dam = dam_of(scene);
+    const scene::Table& block = scene.root().tables("solids").at(0).table("from");
+    const real g = gravity_down(scene), rho = scene.number("fluid.density"), floor = scene.root().numbers("grid.origin").at(1);
+    const real lip = block.numbers("min").at(1) - floor;
+    const Bore bore(dam, g);
+    Reference ref{.source = "Stoker 1957: a bore and its reflection at a wall"};
+    const real head = rho * g * (bore.reflected(g) - 0.5 * (dam.right + lip)), arrival = (block.numbers("min").at(0) - dam.x) / bore.speed;
+    ref.numbers = {{"head", head}, {"arrival", arrival}};
+    ref.curves["head"] = {
+        .label = "head of the reflected bore", .x = {arrival, scene.number("time.end")}, .y = {head, head}, .dashed = true};
     return ref;
 }

@@ -10,7 +10,7 @@
     X(kernel_lattice) X(lake_at_rest) X(ritter) X(stoker) X(flow_over_bump) X(thacker_planar) X(simple_wave) X(solitary_wave) X(long_wave) X(heave) X(dragged) \
     X(wave_train) X(gerstner) X(stokes) X(sea) X(shoaling) X(pond) X(afloat) X(stays) X(round_vessel) X(heave_decay) X(heave_sphere) X(settling_sphere) X(settling_disc) X(square_section) X(phase_diagram) X(van_der_waals) X(stefan) X(ice_in_water) \
     X(melting_gallium) X(decaying_sine) X(steady_slab) X(liquid_body) X(closed_vessel) X(saturated_gas) X(contact) \
-    X(poiseuille_beside_solid) X(turning_cylinder) X(cylinder_in_stream) X(backward_step) X(two_fluid_wave) X(two_fluid_growth) X(liquid_piston) X(glass)
+    X(poiseuille_beside_solid) X(turning_cylinder) X(cylinder_in_stream) X(backward_step) X(two_fluid_wave) X(two_fluid_growth) X(liquid_piston) X(glass) X(closed_hollow)
 // clang-format on
 
 #define DECLARE(name) REFERENCE(name);

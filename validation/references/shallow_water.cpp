@@ -3,6 +3,7 @@
 #include "scene/formula.hpp"
 #include "validation/harness/fitting.hpp"
 #include "validation/harness/reference.hpp"
+#include "validation/references/bore.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,6 @@ using namespace weir;
 using namespace weir::validation;
 
 namespace {
-
-real gravity_down(const scene::Scene& scene) { return -needed_effect(scene, "gravity").numbers("g").at(1); }
 
 /// A formula of the scene, of x and in 3D of z.
 ScalarField formula_of(const scene::Scene& scene, const std::string& path) {
@@ -40,33 +39,10 @@ void add_flow(Reference& ref, const std::function<Flow(real x, real t)>& flow) {
     ref.vectors["velocity"] = [flow](const Vec<3>& x, real t) { return Vec<3>{{flow(x[0], t).u, 0, 0}}; };
 }
 
-/// The zero of an increasing or decreasing f between a and b.
-template <class F>
-real zero_of(F&& f, real a, real b) {
-    const bool rises = f(b) > f(a);
-    for (int n = 0; n < 200; ++n) {
-        const real mid = 0.5 * (a + b);
-        ((f(mid) > 0) == rises ? b : a) = mid;
-    }
-    return 0.5 * (a + b);
-}
-
 /// The fan of Ritter 1892, from still water of depth h at the left.
 Flow fan(real h, real g, real x, real t) {
     const real c = std::sqrt(g * h), xi = x / t;
     return {4 / (9 * g) * (c - xi / 2) * (c - xi / 2), 2.0 / 3 * (xi + c)};
-}
-
-struct Dam {
-    real x = 0, left = 0, right = 0;
-};
-/// Liquid as boxes: the first ends at the dam, a second lies before it.
-Dam dam_of(const scene::Scene& scene) {
-    const auto& boxes = scene.root().tables("liquid");
-    const real floor = scene.root().numbers("grid.origin").at(1);
-    Dam dam{boxes.at(0).numbers("max").at(0), boxes.at(0).numbers("max").at(1) - floor, 0};
-    if (boxes.size() > 1) dam.right = boxes.at(1).numbers("max").at(1) - floor;
-    return dam;
 }
 
 }  // namespace
@@ -97,17 +73,16 @@ REFERENCE(ritter) {
 REFERENCE(stoker) {
     Reference ref{.source = "Stoker 1957: a dam breaks on wet ground"};
     const Dam dam = dam_of(scene);
-    const real g = gravity_down(scene), c = std::sqrt(g * dam.left), hr = dam.right;
-    const real hm =
-        zero_of([&](real h) { return 2 * (c - std::sqrt(g * h)) - (h - hr) * std::sqrt(g / 2 * (h + hr) / (h * hr)); }, hr, dam.left);
-    const real um = 2 * (c - std::sqrt(g * hm)), shock = hm * um / (hm - hr), tail = um - std::sqrt(g * hm);
+    const real g = gravity_down(scene), c = std::sqrt(g * dam.left);
+    const Bore bore(dam, g);
+    const real tail = bore.u - std::sqrt(g * bore.h);
     add_flow(ref, [=](real x, real t) -> Flow {
         const real from = x - dam.x;
         if (from <= -c * t) return {dam.left, 0};
         if (from <= tail * t) return fan(dam.left, g, from, t);
-        return from <= shock * t ? Flow{hm, um} : Flow{hr, 0};
+        return from <= bore.speed * t ? Flow{bore.h, bore.u} : Flow{dam.right, 0};
     });
-    ref.numbers["middle_depth"] = hm, ref.numbers["middle_speed"] = um, ref.numbers["shock_speed"] = shock;
+    ref.numbers["middle_depth"] = bore.h, ref.numbers["middle_speed"] = bore.u, ref.numbers["shock_speed"] = bore.speed;
     return ref;
 }
 
@@ -122,7 +97,7 @@ struct Bernoulli {
         const real c = critical();
         const auto f = [&](real h) { return head(h, z) - head_; };
         if (f(c) >= 0) return c;
-        return shooting ? zero_of(f, 1e-3 * c, c) : zero_of(f, c, std::max(2 * head_, 2 * c));
+        return shooting ? root_between(f, 1e-3 * c, c) : root_between(f, c, std::max(2 * head_, 2 * c));
     }
     /// Momentum flux over g, which a jump keeps.
     real thrust(real h) const { return q * q / (g * h) + h * h / 2; }
@@ -151,7 +126,7 @@ REFERENCE(flow_over_bump) {
         };
         real toe = crest;
         while (toe < right && flow.head(flow.critical(), z(toe)) > head_below) toe += (right - left) / places;
-        jump = differs(right) > 0 ? infinity : zero_of(differs, toe, right);  // else it is washed out of the end
+        jump = differs(right) > 0 ? infinity : root_between(differs, toe, right);  // else it is washed out of the end
     }
     const auto depth = [=](real x) {
         if (subcritical) return flow.depth(head_below, z(x), false);
@@ -200,7 +175,7 @@ REFERENCE(simple_wave) {
         const real slack = 1e-3 * (most - least) + 1e-12;
         // where it came from: x = from + speed(start(from)) t grows with from as long as nothing has broken
         const real from =
-            zero_of([&](real y) { return y + speed(start(y)) * t - x; }, x - speed(most + slack) * t, x - speed(least - slack) * t);
+            root_between([&](real y) { return y + speed(start(y)) * t - x; }, x - speed(most + slack) * t, x - speed(least - slack) * t);
         const real h = start(from);
         return {h, 2 * (std::sqrt(g * h) - c0)};
     });
