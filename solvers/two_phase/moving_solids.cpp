@@ -14,6 +14,22 @@ void VisibleLiquid<D>::see_solids(const SolidPlacement<D>& solids, const MacStat
 }
 
 template <int D>
+void VisibleLiquid<D>::find_room(const MacState<D>& state, const PaddedVelocity<D>& flow, real dt, const FractionGhosts<D>& ghosts) {
+    if (room_.empty()) room_ = Padded<D>(state.extent()), own_room_ = Grid<real, D>(state.extent());
+    for_each_cell(own_room_.extent(), [&](const Index<D>& I) {
+        own_room_(I) = 1;
+        if (part_(I) == 1 || !is_open(state, I)) return;
+        real leaving = 0, out = 0;
+        for (int a = 0; a < D; ++a) {
+            const real ratio = dt / state.u.h[a], lower = ratio * flow[a](I), upper = ratio * flow[a](I + e<D>(a));
+            leaving += std::max(std::abs(lower), std::abs(upper)), out += upper - lower;
+        }
+        own_room_(I) = std::max(part_(I), std::min(1.0, 2 * leaving + std::max(out, 0.0)));
+    });
+    ghosts.fill_all(room_, own_room_);
+}
+
+template <int D>
 real VisibleLiquid<D>::volume(const Grid<real, D>& f) const {
     return sum_over(f.extent(), [&](const Index<D>& I) { return part_(I) * f(I); });
 }
@@ -45,25 +61,7 @@ void VisibleLiquid<D>::restore(const Checkpoint& from) {
     target_ = all[0], corrected_ = {all[1], all[2]};
 }
 
-template <int D>
-void add_solid_flow(const MacState<D>& s, const std::array<Boundary<D>, D>& mirrored, PaddedVelocity<D>& flow) {
-    for (int a = 0; a < D; ++a) {
-        const auto at = static_cast<std::size_t>(a);
-        const auto is_passage = [&](int end) { return s.sides.open(a, end) || s.sides.side(a, end).kind == geometry::SideKind::inflow; };
-        const bool lower = is_passage(0), upper = is_passage(1);
-        for_each_cell(s.u[a].extent(), [&](const Index<D>& I) {
-            if ((lower && I[a] == 0) || (upper && I[a] == s.u.cells[a])) return;
-            flow[a](I) += (1 - s.solid.open[at](I)) * s.solid.velocity[at](I);
-        });
-        fill_ghosts(flow[a], mirrored[at]);
-    }
-}
-
-#define WEIR_INSTANTIATE(D)          \
-    template class VisibleLiquid<D>; \
-    template void add_solid_flow<D>(const MacState<D>&, const std::array<Boundary<D>, D>&, PaddedVelocity<D>&);
-WEIR_INSTANTIATE(2)
-WEIR_INSTANTIATE(3)
-#undef WEIR_INSTANTIATE
+template class VisibleLiquid<2>;
+template class VisibleLiquid<3>;
 
 }  // namespace weir::two_phase

@@ -1,7 +1,11 @@
-// Moving solids among liquid and gas. A u + (1 − A) u_s crosses a face, u_s the solid's velocity: its divergence is zero in every cell that
-// holds fluid, and f in closed cells is carried with the solid. f of a cut cell is that of its open part V, outside the solid, so the
-// liquid that is visible is Σ V f. Faces and cells know the sweep of a solid to first order only. What a step has made of Σ V f is given
-// back at the interface: a correction of volume by mixed cells (Weymouth & Yue 2010 need none, as their V is constant).
+// Moving solids among liquid and gas. The pressure makes A u + (1 − A) u_s free of divergence, u_s the solid's velocity. Liquid and
+// momentum are advected with A u, whose divergence is what solids drive out of a cell. f of a cut cell is that of its open part V, so the
+// liquid is Σ V f:
+//
+//     (V − dt ∇·(A u)) f' = V f − Σ F,      V ≥ 2 Σ|C|  where a small cell would be emptied (it then fills slower than it would)
+//
+// Placement knows V to second order, the sweep of a solid to first order. What a step has made of Σ V f is given back at the interface: a
+// correction of volume by mixed cells (Weymouth & Yue 2010 need none, as their V is constant).
 #pragma once
 #include "two_phase/solids.hpp"
 
@@ -14,6 +18,11 @@ public:
     void see_solids(const SolidPlacement<D>& solids, const MacState<D>& state);
     /// The part of a cell outside solids.
     real part(const Index<D>& I) const { return part_(I); }
+    /// Sets room() for a step in which A u is `flow`.
+    void find_room(const MacState<D>& state, const PaddedVelocity<D>& flow, real dt, const FractionGhosts<D>& ghosts);
+    /// Volumes of cells outside solids at the start of a step [cells], but at least twice what may leave them in it: a small cell fills and
+    /// empties slower than it would.
+    const Padded<D>& room() const { return room_; }
     /// From now on the volume of these fractions is kept.
     void start(const Grid<real, D>& f) { target_ = volume(f); }
     /// Bounds the fractions in solids, and moves those of mixed cells so that the liquid is what it was and `entered` more [cells].
@@ -25,16 +34,14 @@ public:
     real corrections() const { return corrected_[1]; }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
-    std::size_t bytes() const { return part_.bytes(); }
+    std::size_t bytes() const { return part_.bytes() + own_room_.bytes() + room_.bytes(); }
 
 private:
     Grid<real, D> part_;
+    Grid<real, D> own_room_;
+    Padded<D> room_;  // with ghosts
     real target_ = 0;
     std::array<real, 2> corrected_{};
 };
-
-/// Adds (1 − A) u_s to the A u of `flow`, except on open sides and inflows, through which fluid alone passes.
-template <int D>
-void add_solid_flow(const MacState<D>& s, const std::array<Boundary<D>, D>& mirrored, PaddedVelocity<D>& flow);
 
 }  // namespace weir::two_phase

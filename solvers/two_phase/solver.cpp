@@ -43,9 +43,10 @@ template <int D>
 Motion<D> TwoPhase<D>::motion(real dt) {
     for (int a = 0; a < D; ++a) fill(state_.before[a], state_.u[a], mirrored_[static_cast<std::size_t>(a)]);
     if (solids_.any()) find_open_flow<D>(state_, solids_, mirrored_, open_flow_);
-    if (solids_.moving()) add_solid_flow<D>(state_, mirrored_, open_flow_);
     const PaddedVelocity<D>& flow = solids_.any() ? open_flow_ : state_.before;
-    return {state_.before, flow, dt, sweep_order<D>(steps_ + experiment_.first_order_of_sweeps)};
+    if (solids_.moving()) visible_.find_room(state_, flow, dt, ghosts_of_fraction_);
+    const Padded<D>* room = solids_.moving() ? &visible_.room() : nullptr;
+    return {state_.before, flow, dt, sweep_order<D>(steps_ + experiment_.first_order_of_sweeps), room};
 }
 
 template <int D>

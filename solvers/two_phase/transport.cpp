@@ -159,6 +159,12 @@ void Transport<D>::Volumes::find_dilation(int number, const Index<D>& first, int
     for (int k = 0; k < number; ++k) add_dilation(axis(k), first, count, -1, dilation);
 }
 
+template <int D>
+void Transport<D>::Volumes::find_driven_out(const Index<D>& first, int count, real* out) const {
+    std::fill_n(out, count, 0.0);
+    for (int d = 0; d < D; ++d) add_dilation(d, first, count, 1, out);
+}
+
 /// What flows in through an open side along axis d is not what stands beside it within: a wave that touches an open top would draw liquid
 /// from outside. The volumes of faces on the side itself are half outside; they keep their mirrored ghosts.
 template <int D>
@@ -183,12 +189,13 @@ void Transport<D>::find_fluxes(const Volumes& v, int d) {
     for_each_row(Index<D>{}, faces, [&](const Index<D>& first, int count) {
         alignas(64) real C[row_block];
         v.find_courants(d, first, count, C);
-        const real* f = v.f.at(first);
+        const real *f = v.f.at(first), *room = v.component < 0 && v.motion.room ? v.motion.room->at(first) : nullptr;
         real* F = &liquid_flux_(first);
         if (find_pure_fluxes(f, by, C, count, F))
             for (int i = 0; i < count; ++i) {
-                const real* donor = f + i - (C[i] > 0 ? by : 0);
-                if (is_mixed(*donor) && C[i] != 0) F[i] = C[i] * fraction_of_slab<D>(donor, stride, d, C[i] > 0 ? 1 : 0, std::abs(C[i]));
+                const std::ptrdiff_t donor = i - (C[i] > 0 ? by : 0);
+                const real width = std::abs(C[i]) / (room ? room[donor] : 1);
+                if (is_mixed(f[donor]) && C[i] != 0) F[i] = C[i] * fraction_of_slab<D>(f + donor, stride, d, C[i] > 0 ? 1 : 0, width);
             }
         set_returning(v, d, first, count, C, F);
         if (v.q) find_momentum_fluxes(v.rho, f, v.q->at(first), by, C, F, count, &momentum_flux_(first));
@@ -203,8 +210,11 @@ void Transport<D>::add_fluxes(const Volumes& v, int number) {
     const real least = 0.1 * rho.lightest();  // f may be below 0 by the divergence that the pressure left
     const bool last = number + 1 == D;
     for_each_row(Index<D>{}, v.f.extent(), [&](const Index<D>& first, int count) {
-        alignas(64) real dilation[row_block];
+        alignas(64) real dilation[row_block], driven_out[row_block];
         v.find_dilation(number, first, count, dilation);
+        const bool shrinks = last && v.motion.room;
+        if (shrinks) v.find_driven_out(first, count, driven_out);
+        if (!v.q && v.motion.room) return add_fluxes_in_rooms(v, number, first, count, dilation, shrinks ? driven_out : nullptr);
         const real *F = &liquid_flux_(first), *start = &v.start(first), *f = v.f.at(first);
         if (!v.q) {
             real* to = last ? &v.to(first) : v.f.at(first);
@@ -214,15 +224,35 @@ void Transport<D>::add_fluxes(const Volumes& v, int number) {
         }
         const real *momentum = &momentum_flux_(first), *before = v.motion.u[v.component].at(first), *q = v.q->at(first);
         real *to = last ? &v.to(first) : v.q->at(first), *new_f = v.f.at(first);
+        const auto add = [&](auto is_shrinking) {
 #pragma omp simd
-        for (int i = 0; i < count; ++i) {
-            const bool mostly_liquid = start[i] > 0.5;
-            const real mass = rho.of(f[i]), fraction = f[i] + (F[i] - F[i + up] + (mostly_liquid ? dilation[i] : 0));
-            const real restored = (mostly_liquid ? rho.liquid : rho.gas) * before[i] * dilation[i], density = rho.of(fraction);
-            new_f[i] = fraction;
-            to[i] = (mass * q[i] + momentum[i] - momentum[i + up] + restored) / (density < least ? least : density);
-        }
+            for (int i = 0; i < count; ++i) {
+                const bool mostly_liquid = start[i] > 0.5;
+                const real mass = rho.of(f[i]);
+                real fraction = f[i] + (F[i] - F[i + up] + (mostly_liquid ? dilation[i] : 0));
+                real restored = (mostly_liquid ? rho.liquid : rho.gas) * before[i] * dilation[i];
+                if constexpr (is_shrinking)  // what stays has the fraction and the velocity of the start
+                    fraction += start[i] * driven_out[i], restored += rho.of(start[i]) * before[i] * driven_out[i];
+                const real density = rho.of(fraction);
+                new_f[i] = fraction;
+                to[i] = (mass * q[i] + momentum[i] - momentum[i + up] + restored) / (density < least ? least : density);
+            }
+        };
+        shrinks ? add(std::true_type{}) : add(std::false_type{});
     });
+}
+
+/// The liquid of a cell is V f, V its room. In the last sweep the room shrinks by what solids drive out: f of what stays is in [0, 1].
+template <int D>
+void Transport<D>::add_fluxes_in_rooms(const Volumes& v, int number, const Index<D>& first, int count, const real* dilation,
+                                       const real* driven_out) {
+    const std::ptrdiff_t up = liquid_flux_.stride(v.motion.order[static_cast<std::size_t>(number)]);
+    const real *F = &liquid_flux_(first), *start = &v.start(first), *f = v.f.at(first), *room = v.motion.room->at(first);
+    real* to = driven_out ? &v.to(first) : v.f.at(first);
+    for (int i = 0; i < count; ++i) {
+        const real gained = F[i] - F[i + up] + (start[i] > 0.5 ? dilation[i] : 0), out = driven_out ? driven_out[i] : 0;
+        to[i] = room[i] > out ? (room[i] * f[i] + gained) / (room[i] - out) : start[i];
+    }
 }
 
 template <int D>

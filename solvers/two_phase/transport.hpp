@@ -26,10 +26,11 @@ std::array<int, D> sweep_order(std::int64_t step);
 /// Motion during a step.
 template <int D>
 struct Motion {
-    const PaddedVelocity<D>& u;     // at the start of the step, mirrored at walls [m/s]
-    const PaddedVelocity<D>& flow;  // through the open part of faces: A u; without solids u itself [m/s]
-    real dt;                        // [s]
-    std::array<int, D> order;       // of the sweeps
+    const PaddedVelocity<D>& u;       // at the start of the step, mirrored at walls [m/s]
+    const PaddedVelocity<D>& flow;    // through the open part of faces: A u; without solids u itself [m/s]
+    real dt;                          // [s]
+    std::array<int, D> order;         // of the sweeps
+    const Padded<D>* room = nullptr;  // volumes of cells outside moving solids, which take and leave room; nullptr: nothing moves
 };
 
 template <int D>
@@ -63,6 +64,8 @@ private:
         void add_dilation(int d, const Index<D>& first, int count, real sign, real* sum) const;
         /// c dC of the sweep of this number, without c; in the last one what takes that of the earlier ones back.
         void find_dilation(int number, const Index<D>& first, int count, real* dilation) const;
+        /// Σ dC: what moving solids drive out of the volumes of a row in the step [cells].
+        void find_driven_out(const Index<D>& first, int count, real* out) const;
     };
     /// Returns the liquid that crossed open sides and inflows.
     real run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
@@ -70,6 +73,7 @@ private:
     void find_fluxes(const Volumes& v, int d);
     void set_returning(const Volumes& v, int d, const Index<D>& first, int count, const real* C, real* F) const;
     void add_fluxes(const Volumes& v, int number);
+    void add_fluxes_in_rooms(const Volumes& v, int number, const Index<D>& first, int count, const real* dilation, const real* driven_out);
 
     Vec<D> per_cell(real dt) const;
 

@@ -40,6 +40,20 @@ std::string constant(const std::vector<std::string>& velocity) {
     return "kind = \"constant\", velocity = " + list(velocity, D);
 }
 
+/// Gas in a box [m²; m³], by the fractions of the cells that it covers.
+template <int D>
+real gas_in(const TwoPhase<D>& solver, const Vec<D>& lo, const Vec<D>& hi) {
+    const auto& grid = solver.state().u;
+    return grid.cell_volume() * sum_over(solver.fraction().extent(), [&](const Index<D>& I) {
+               real covered = 1;
+               for (int d = 0; d < D; ++d) {
+                   const real first = (lo[d] - grid.origin[d]) / grid.h[d] - I[d], last = (hi[d] - grid.origin[d]) / grid.h[d] - I[d];
+                   covered *= std::max(0.0, std::clamp(last, 0.0, 1.0) - std::clamp(first, 0.0, 1.0));
+               }
+               return covered * (1 - solver.fraction()(I));
+           });
+}
+
 /// Runs up to time t. Returns the largest sum of both energies.
 template <int D>
 real run_until(TwoPhase<D>& solver, real t) {
@@ -63,6 +77,7 @@ TEST_IN_2D_AND_3D(
         const real volume = integral(solver, "volume");
         run_until(solver, D == 2 ? 0.4 : 0.1);
         EXPECT_NEAR(integral(solver, "volume"), volume, 1e-14);
+        std::printf("corrections %g\n", integral(solver, "volume_corrections"));
         const real skin = (D == 2 ? 2 * pi * 0.15 : 4 * pi * 0.15 * 0.15) / 24;
         EXPECT_LT(integral(solver, "volume_corrections"), skin);
     }
@@ -82,6 +97,50 @@ TEST("a blade that rotates in the surface keeps the visible liquid, from any ang
             const real volume = integral(solver, "volume"), energy = integral(solver, "potential_energy");
             EXPECT_LT(run_until(solver, 0.5) - energy, 0.5 * 470 * 1.0);
             EXPECT_NEAR(integral(solver, "volume"), volume, 1e-14);
+        }
+}
+
+// The surface in the glass may err by a tenth of a cell; a surface that lags beside cut walls, or is dragged along by them, loses 3%.
+TEST_IN_2D_AND_3D("an upturned glass that is pushed into the liquid keeps its gas, wherever its walls cut cells") {
+    const int n = D == 2 ? 64 : 32;
+    const real half = 0.125, high = 0.325, speed = D == 2 ? 0.2 : 0.4, h = 1.0 / n;
+    for (const real shift : {0.0, 0.26 * h, 0.5 * h}) {
+        const auto box = [&](real away, real low, real top) {
+            const std::string lo = std::to_string(0.5 + shift - away), hi = std::to_string(0.5 + shift + away);
+            return "{ shape = \"box\", min = " + list({lo, std::to_string(low), lo}, D) +
+                   ", max = " + list({hi, std::to_string(top), hi}, D) + " }";
+        };
+        const std::string glass = "{ shape = \"difference\", from = " + box(half + 0.08, 0.5, 0.5 + high + 0.08) + ", minus = [ " +
+                                  box(half, 0.2, 0.5 + high) + " ], motion = { " + constant<D>({"0.0", std::to_string(-speed), "0.0"}) +
+                                  " } }";
+        TwoPhase<D> solver(two_phase_scene(tank<D>(glass, "sides = { y_max = { kind = \"outflow\" } }"),
+                                           {{"liquid", "[ { shape = \"box\", min = " + list({"-1.0", "-1.0", "-1.0"}, D) +
+                                                           ", max = " + list({"2.0", "0.55", "2.0"}, D) + " } ]"},
+                                            {"grid.cells", list({std::to_string(n), std::to_string(n), std::to_string(n)}, D)},
+                                            {"grid.size", list({"1.0", "1.0", "1.0"}, D)}}));
+        const auto gas = [&] {
+            Vec<D> lo = Vec<D>::constant(0.5 + shift - half), hi = Vec<D>::constant(0.5 + shift + half);
+            lo[1] = 0.5 - speed * solver.time() - 2 * h, hi[1] = lo[1] + high + 2 * h;
+            return gas_in(solver, lo, hi);
+        };
+        const real before = gas();
+        run_until(solver, 0.25 / speed);
+        EXPECT_NEAR(gas(), before, 0.1 * h * before / high) << "shifted by " << shift / h << " cells";
+    }
+}
+
+// The tangential velocity of a wall without friction moves nothing. A solid's velocity is that at the middle of a face, at most h/2 (1 − A)
+// from the middle of its closed part, so a rotation leaves fluxes of A (1 − A) ω h/2 ≤ ω h/8 in a layer of one cell around the wet half.
+TEST_IN_2D_AND_3D("a half-submerged ball that rotates leaves still liquid as still as the fluxes of its cut faces are exact") {
+    const real h = 1.0 / 24, wet = D == 2 ? pi * 0.15 : 2 * pi * 0.15 * 0.15;
+    for (const char* x : {"0.5", "0.513"})
+        for (const real omega : {2.0, -2.0}) {
+            const std::string turns =
+                fmt::format("kind = \"keyframes\", centre = {}{}, frames = [ {{ t = 0.0 }}, {{ t = 10.0, angle = {} }} ]",
+                            list({x, "0.47", "0.36"}, D), D == 3 ? ", axis = [1.0, 0.0, 0.0]" : "", 10 * omega);
+            TwoPhase<D> solver(two_phase_scene(tank<D>(ball<D>({x, "0.47", "0.36"}, turns))));
+            run_until(solver, D == 2 ? 1.0 : 0.3);
+            EXPECT_LT(integral(solver, "kinetic_energy"), 0.5 * 1000 * wet * h * std::pow(omega * h / 8, 2)) << x << ' ' << omega;
         }
 }
 
