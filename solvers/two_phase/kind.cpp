@@ -88,6 +88,7 @@ void check_parallel(const scene::Scene& scene) {
     if (scene.has("solids"))
         for (const auto& solid : scene.root().tables("solids"))
             if (solid.has("motion")) scene::one_process_only(scene, "solids", "moving solids among two phases are");
+    scene::refuse_bodies(scene);
     scene::refuse_brush(scene);
 }
 
@@ -106,13 +107,16 @@ scene::SolverKind kind() {
                               .max = 0.5}}},
                    gas_key(),
                    side_keys(),
+                   rigid::bodies_key(),
+                   rigid::joints_key(),
+                   rigid::probe_key(),
                    scheme_key({PoissonChoice::key()}),
                    start_keys()};
     schema.effects = effect_schemas();
     schema.without = {"emitters", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "initial.temperature", "initial.smoke"};
     schema.why_without =
-        "this solver has walls, inflows, p = 0 on open sides, periodic axes and solids, at rest or in a prescribed motion; "
-        "\"mac_water\" has bodies, emitters and heat";
+        "this solver has walls, inflows, p = 0 on open sides, periodic axes, bodies, and solids, at rest or in a prescribed motion; "
+        "\"mac_water\" has emitters and heat";
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},

@@ -23,6 +23,7 @@ FieldSet TwoPhase<D>::fields() const {
     if (own().distributed_storage()) set.cut = &own().partition();
     update_distance();
     set.fields.push_back({level_set_name, "m", Where::cell, "", {distance_.values()}});
+    if (bodies_) bodies_->bodies().show(set);
     return set;
 }
 
@@ -133,6 +134,8 @@ std::vector<Integral> TwoPhase<D>::integrals() const {
     const char* const rules[bounds] = {"steps_bound_by_speed", "steps_bound_by_tension", "steps_bound_by_gravity"};
     for (std::size_t i = 0; i < bounds; ++i) list.push_back({rules[i], "", static_cast<real>(ruled_[i])});
     if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
+    if (bodies_)
+        for (auto& integral : bodies_->bodies().integrals(gravity_)) list.push_back(std::move(integral));
     return list;
 }
 
@@ -143,6 +146,7 @@ void TwoPhase<D>::save(Checkpoint& to) const {
     to.put_value("two_phase.ruled", ruled_);
     if (has_open_sides()) to.put_value("two_phase.poured", poured_);
     if (brush_forcing_) brush_forcing_->save(to);
+    if (bodies_) bodies_->save(to);
     if (solids_.moving()) visible_.save(to);
 }
 
@@ -155,6 +159,7 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !own().distributed();
     refresh(state_.u[D - 1], around_.repeats());
+    if (bodies_) bodies_->restore(from, solids_);
     if (solids_.moving()) {
         solids_.place(state_, state_.time);
         see_solids();
@@ -169,7 +174,7 @@ template <int D>
 std::size_t TwoPhase<D>::bytes() const {
     std::size_t total = state_.bytes() + transport_.bytes() + fraction_ghosts_.bytes() + curvature_.bytes() + projection_.bytes() +
                         effects_.bytes() + distance_.bytes() + solids_.bytes() + continued_.bytes() + visible_.bytes() +
-                        (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0);
+                        (bodies_ ? bodies_->bytes() : 0) + (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0);
     for (const auto& fractions : faces_) total += fractions.bytes();
     for (const auto& component : open_flow_.face) total += component.bytes();
     return total;

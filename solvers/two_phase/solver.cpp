@@ -22,7 +22,8 @@ StepReport TwoPhase<D>::step(real dt) {
     apply_viscosity(dt);                                // (ρ_a − dt ∇·2μD) u = ρ_a u
     effects_.apply(Stage::force, state_, dt, passes_);  // u += dt g
     apply_tension(dt);                                  // u += dt σ κ ∇f / ρ_a
-    const poisson::Report poisson = mac::explained_by_room(state_, solids_, [&] { return project(dt); });  // u −= dt ∇p / ρ_a,  ∇·u = 0
+    const poisson::Report poisson =
+        mac::explained_by_room(state_, solids_, [&] { return project(dt, bodies_.get()); });  // u −= dt ∇p / ρ_a,  ∇·u = 0
     const real divergence = max_divergence(state_);
     mac::require_room(state_, solids_, divergence);
     find_rate();
@@ -59,7 +60,7 @@ void TwoPhase<D>::transport(real dt) {
             const auto at = static_cast<std::size_t>(a);
             transport_.advect_momentum(a, motion, faces_[at], state_.boundary[at], rho, state_.u[a]);
         }
-        move_solids(state_.time + dt);
+        move_solids(dt);
         set_side_faces(state_.u, state_.sides, state_.nu);
         solids_.set_faces(state_);
         sync_periodic(state_.u, state_.sides);
@@ -80,10 +81,11 @@ void TwoPhase<D>::transport(real dt) {
 
 /// Faces that a solid uncovers keep the velocity that was advected there.
 template <int D>
-void TwoPhase<D>::move_solids(real t) {
+void TwoPhase<D>::move_solids(real dt) {
     if (!solids_.moving()) return;
     const auto timed = passes_.time("solids");
-    solids_.place(state_, t);
+    if (bodies_) bodies_->advance_free(solids_, dt);
+    solids_.place(state_, state_.time + dt);
     see_solids();
 }
 
@@ -147,12 +149,14 @@ void TwoPhase<D>::apply_tension(real dt) {
 }
 
 template <int D>
-const poisson::Report& TwoPhase<D>::project(real dt) {
+const poisson::Report& TwoPhase<D>::project(real dt, BodiesInFlow<D>* bodies) {
     const auto timed = passes_.time("project");
     solids_.set_faces(state_);
     sync_periodic(state_.u, state_.sides);
     projection_.set_matrix(state_, &fraction());
-    return projection_.project(state_, dt);
+    const poisson::Report& report = projection_.project(state_, dt, bodies, &solids_);
+    if (bodies_) solids_.see_velocities(state_);
+    return report;
 }
 
 /// Weymouth & Yue's measure of a step: the cells that leave a cell along all axes together.

@@ -7,6 +7,7 @@
 #pragma once
 #include "core/effects.hpp"
 #include "core/solver.hpp"
+#include "mac/bodies/bodies_in_flow.hpp"
 #include "mac/grid/projection.hpp"
 #include "mac/grid/state.hpp"
 #include "scene/solver_kind.hpp"
@@ -88,19 +89,21 @@ private:
     bool has_open_sides() const;
     void place_solids(const scene::Scene& scene);
     void start_liquid(const scene::Scene& scene);
+    void start_bodies(const scene::Scene& scene);
     void start_velocity(const scene::Scene& scene);
     void require_room(const scene::Scene& scene) const;
 
     // The passes of a step, in order
     Motion<D> motion(real dt);
     void transport(real dt);
-    void move_solids(real t);
+    void move_solids(real dt);
     void see_solids();
     void find_face_densities();
     void use_mean_densities();
     void apply_viscosity(real dt);
     void apply_tension(real dt);
-    const poisson::Report& project(real dt);
+    /// `bodies`: those that the pressure moves; nullptr: all move as they do.
+    const poisson::Report& project(real dt, BodiesInFlow<D>* bodies);
     void find_rate();
     void add_rate(int a, const Index<D>& first, int count, real* sum) const;
     void check() const;
@@ -119,8 +122,9 @@ private:
 
     Options options_;
     Experiment experiment_;
-    MacState<D> state_;  // its density is that of the lighter phase, its mobility that over the density of the face
-    SolidPlacement<D> solids_;
+    MacState<D> state_;                        // its density is that of the lighter phase, its mobility that over the density of the face
+    std::unique_ptr<BodiesInFlow<D>> bodies_;  // nullptr where the scene has none
+    SolidPlacement<D> solids_;                 // with the bodies
     EnteringFractions<D> entering_;
     std::array<Boundary<D>, D> mirrored_;  // conditions of the advecting velocity: no flow through walls
     FractionGhosts<D> ghosts_of_fraction_;

@@ -64,12 +64,14 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition& partition, con
     : options_(scene),
       experiment_(experiment),
       state_(scene, two_phase::fields(), slab_of<D>(scene, partition, planes_beside)),
-      solids_(geometry::Solids<D>(scene), state_),
+      bodies_(BodiesInFlow<D>::make(scene)),
+      solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
       entering_(entering_fractions<D>(scene, state_.sides, geometry::SideKind::inflow)),
       ghosts_of_fraction_(state_.sides, -1, entering_),
       around_(state_.sides, state_.u.cells),
       effects_(make_effects<D>(body_forces(), scene, {Stage::force})),
-      brush_forcing_(geometry::make_brush(scene, {BrushKind::push, BrushKind::pull})),
+      brush_forcing_(bodies_ ? geometry::make_brush(scene, {BrushKind::push, BrushKind::pull, BrushKind::grab})
+                             : geometry::make_brush(scene, {BrushKind::push, BrushKind::pull})),
       gravity_(free_surface::gravity_of<D>(scene)),
       up_(free_surface::up_axis<D>(gravity_)),
       transport_(state_, entering_, entering_fractions<D>(scene, state_.sides, geometry::SideKind::outflow)),
@@ -102,6 +104,7 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition& partition, con
     }
     whole_ = !own().distributed();
     start_liquid(scene);
+    if (bodies_) start_bodies(scene);
     start_velocity(scene);
     find_rate();
 }
@@ -159,6 +162,14 @@ void TwoPhase<D>::start_liquid(const scene::Scene& scene) {
     find_face_densities();
 }
 
+/// The fractions of cells must be known.
+template <int D>
+void TwoPhase<D>::start_bodies(const scene::Scene& scene) {
+    bodies_->set_density([this](std::size_t cell) { return options_.rho.of(fraction()[cell]); });
+    bodies_->start(state_, solids_);
+    if (brush_forcing_) bodies_->follow(brush_forcing_, scene);
+}
+
 /// A given velocity is made divergence-free; the pressure of that projection is not one of the flow.
 template <int D>
 void TwoPhase<D>::start_velocity(const scene::Scene& scene) {
@@ -174,7 +185,7 @@ void TwoPhase<D>::start_velocity(const scene::Scene& scene) {
     }
     const bool enters = std::any_of(entering_.begin(), entering_.end(), [](const auto& ends) { return ends[0] || ends[1]; });
     if (!liquid_moves && !enters && !solids_.moving() && scene.root().text_or("initial.velocity.name", "rest") == "rest") return;
-    project(1);
+    project(1, nullptr);
     state_.p.fill(0);
 }
 
@@ -190,6 +201,8 @@ template void TwoPhase<2>::require_room(const scene::Scene&) const;
 template void TwoPhase<3>::require_room(const scene::Scene&) const;
 template void TwoPhase<2>::start_liquid(const scene::Scene&);
 template void TwoPhase<3>::start_liquid(const scene::Scene&);
+template void TwoPhase<2>::start_bodies(const scene::Scene&);
+template void TwoPhase<3>::start_bodies(const scene::Scene&);
 template void TwoPhase<2>::start_velocity(const scene::Scene&);
 template void TwoPhase<3>::start_velocity(const scene::Scene&);
 

@@ -187,8 +187,8 @@ std::map<std::string, Said> everything() {
         endless_bodies, all(of_surfaces, Lines{of_level_set, wet_mesh})};
     said["two_phase"] = {
         Lines{"gas = { density = 0.1 }", liquid[0]},
-        all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, at_rest(solids), poisson, grid_velocities, walls,
-            open_sides,
+        all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, at_rest(solids), bodies, joints, poisson, grid_velocities,
+            walls, open_sides,
             Lines{"liquid = [ { shape = \"wave\", level = 0.5, amplitude = 0.1, wavelength = 1 } ]", "time.cfl = 0.4",
                   "time.stop_when_steady = 0.1", "fluid.density = 2", "effects.gravity.g = [0, -1]", "effects.surface_tension.sigma = 1",
                   "gas = { density = 0.1, viscosity = 1 }\neffects.viscosity = {}\nfluid.viscosity = 1", "initial.liquid_velocity = [1, 0]",

@@ -8,6 +8,9 @@ namespace weir::mac {
 using poisson::Cell;
 using rigid::Body;
 
+/// A body in gas falls nearly freely where its acceleration differs from that of gravity by less than this part.
+static constexpr real nearly = 0.05;
+
 void refuse_explicit_friction(const scene::Table& viscosity, const scene::Scene& scene) {
     for (const auto& body : scene.root().tables("bodies"))
         if (viscosity.text("scheme") != "implicit" && body.text("slip") == "no")
@@ -49,7 +52,11 @@ BodiesInFlow<D>::BodiesInFlow(const scene::Scene& scene)
 template <int D>
 void BodiesInFlow<D>::start(const MacState<D>& s, const SolidPlacement<D>& solids) {
     find_cuts(s, solids);
-    for (std::size_t i = 0; i < bodies_.count(); ++i) bodies_[i].wet = liquid_fraction(s, i);
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+        bodies_[i].wet = liquid_fraction(s, i);
+        const bool falls = density_of_cell_ && density_around(s, i) < nearly * bodies_[i].density();
+        for (std::size_t a = 0; a < D && falls; ++a) gained_[i * n + a] = gravity_[static_cast<int>(a)];
+    }
     rigid::Surroundings<D> around = bodies_.surroundings(solids.solids());
     around.reach = 1e-3 * norm(h_);
     contacts_.find(bodies_.all(), around);
@@ -126,9 +133,24 @@ void BodiesInFlow<D>::set_no_slip_walls(const MacState<D>& s, const SolidPlaceme
     find_no_slip_walls(s, solids, *no_slip_walls_);
 }
 
+/// Returns whether a body in gas fell nearly freely in the last step: its path is that of a constant acceleration. (Where the force depends
+/// on the position this would damp.)
+template <int D>
+bool BodiesInFlow<D>::falls(std::size_t i) const {
+    if (!density_of_cell_ || bodies_[i].wet == 0 || bodies_[i].touches) return false;
+    Vec<D> missing = gravity_;
+    for (int a = 0; a < D; ++a) missing[a] -= gained_[i * n + static_cast<std::size_t>(a)];
+    return norm(missing) < nearly * norm(gravity_);
+}
+
 template <int D>
 void BodiesInFlow<D>::advance_free(SolidPlacement<D>& solids, real dt) {
-    for (auto& body : bodies_.all()) body.advance_free(dt, gravity_);
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+        Body<D>& body = bodies_[i];
+        body.advance_free(dt, gravity_);
+        for (int a = 0; a < D && falls(i); ++a)
+            if (!body.held[static_cast<std::size_t>(a)]) body.at[a] += 0.5 * dt * dt * gravity_[a];
+    }
     bodies_.place(solids.solids());
 }
 

@@ -19,6 +19,7 @@
 #include "rigid/added_mass.hpp"
 #include "rigid/bodies.hpp"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,8 @@ public:
     const rigid::Bodies<D>& bodies() const { return bodies_; }
     /// Enables interactive forcing of the bodies; rejects keyframes with a body index out of range.
     void follow(std::shared_ptr<BrushForcing> forcing, const scene::Scene& scene);
+    /// Fluid whose density varies: that of the cell with this linear index [kg/m³]. Without it, it is s.rho.
+    void set_density(std::function<real(std::size_t)> of_cell) { density_of_cell_ = std::move(of_cell); }
     /// Initializes the wet parts of the bodies at t = 0.
     void start(const MacState<D>& s, const SolidPlacement<D>& solids);
     /// Makes the bodies with no slip couple to viscosity; `holds_closed`: see NoSlipWalls.
@@ -80,20 +83,32 @@ private:
     /// A cell that a body cuts.
     struct Cut {
         std::size_t cell;
-        rigid::Twist<D> out;  // ΔV D_k: volume flux out of the cell per unit of each velocity [m^D/s per m/s or rad/s]
-        real below = 0;       // g · (wall − cell centre); deep: g · (wall − centre of mass) [m²/s²]
+        rigid::Twist<D> out;       // ΔV D_k: volume flux out of the cell per unit of each velocity [m^D/s per m/s or rad/s]
+        rigid::Twist<D> passed{};  // the part of `out` that comes from sealed cells
+        real below = 0;            // g · (wall − cell centre); deep: g · (wall − centre of mass) [m²/s²]
         real deep = 0;
     };
+    real density(const MacState<D>& s, std::size_t cell) const { return density_of_cell_ ? density_of_cell_(cell) : s.rho; }
     real gap(const MacState<D>& s, const Grid<real, D>& phi, real cap, const rigid::Body<D>& body) const;
     void find_cuts(const MacState<D>& s, const SolidPlacement<D>& solids);
     void find_faces(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t body);
     Cut& cut(std::size_t cell, std::size_t body);
+    /// A closed cell between a body and a wall or another solid, and the flux out of it as in Cut.
+    struct Sealed {
+        std::size_t cell;
+        rigid::Twist<D> out;
+    };
+    bool is_sealed(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t own, const Index<D>& I) const;
+    void pass_on_sealed(const MacState<D>& s, std::size_t body);
+    void add_sealed(const MacState<D>& s, real dt, Grid<real, D>& b) const;
     void set_velocities(MacState<D>& s) const;
     void scatter(std::size_t body, const rigid::Twist<D>& velocity, real scale, Grid<real, D>& to) const;
     rigid::Twist<D> push(std::size_t body, const Grid<real, D>& p) const;
     rigid::Twist<D> force(const MacState<D>& s, std::size_t body) const;
     real liquid_fraction(const MacState<D>& s, std::size_t body) const;
-    rigid::Twist<D> weight(std::size_t body) const;
+    real density_around(const MacState<D>& s, std::size_t body) const;
+    bool falls(std::size_t body) const;
+    rigid::Twist<D> weight(const MacState<D>& s, std::size_t body) const;
     rigid::Block<D> mass_of(std::size_t body) const;
     rigid::Block<D> mass_of_wet_surface(const MacState<D>& s, std::size_t body) const;
     void begin(const MacState<D>& s, bool wet, real dt);
@@ -126,11 +141,13 @@ private:
     std::unique_ptr<NoSlipWalls<D>> no_slip_walls_;  // nullptr: no body has no slip
     rigid::Contacts<D> contacts_;
     Vec<D> gravity_{};
+    std::function<real(std::size_t)> density_of_cell_;  // empty: s.rho
     real rho_ = 1, cell_ = 0, h2_ = 0;
     Vec<D> h_{};
     std::vector<std::vector<Face>> faces_;  // per body, the faces that it closes, wholly or partly
     std::vector<std::vector<Cut>> cuts_;
     std::vector<std::size_t> near_;  // solids near the present body
+    std::vector<Sealed> sealed_;     // cells at the present body; only where the density varies
     Grid<real, D> rhs_, phi_;        // for measuring the added mass; phi_ otherwise zero, to hold list indices
     rigid::AddedMass<D> added_;
     rigid::Mobility mobility_;

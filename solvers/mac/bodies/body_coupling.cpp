@@ -41,7 +41,7 @@ void BodiesInFlow<D>::begin(const MacState<D>& s, bool wet, real dt) {
         body.wet = wet ? liquid_fraction(s, i) : 0;
         masses_[i] = mass_of(i);
         added_.see(i, body.wet > 0 ? mass_of_wet_surface(s, i) : rigid::Block<D>{});
-        const Twist<D> heavy = weight(i);
+        const Twist<D> heavy = weight(s, i);
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t at = i * n + k;
             before_[at] = velocity_[at] = base_[at] = body.velocity[k];
@@ -168,7 +168,7 @@ template <int D>
 Twist<D> BodiesInFlow<D>::impulse_without_pressure(const MacState<D>& s, std::size_t body, real dt) const {
     Twist<D> sum{};
     for (const Cut& c : cuts_[body])
-        for (std::size_t k = 0; s.cells[c.cell] == Cell::fluid && k < n; ++k) sum[k] += c.out[k] * c.below;
+        for (std::size_t k = 0; s.cells[c.cell] == Cell::fluid && k < n; ++k) sum[k] += c.out[k] * c.below * (density(s, c.cell) / s.rho);
     for (std::size_t k = 0; k < n; ++k) sum[k] = dt * s.rho * sum[k] + heavy_[body * n + k] + others_[body * n + k];
     return sum;
 }
@@ -315,6 +315,7 @@ template <int D>
 const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>& placement, real dt, poisson::Solver<D>* solver,
                                               real tolerance, Grid<real, D>* b) {
     find_cuts(s, placement);
+    if (b) add_sealed(s, dt, *b);
     begin(s, solver != nullptr, dt);
     const bool coupled = std::any_of(bodies_.all().begin(), bodies_.all().end(), [](const Body<D>& body) { return body.wet > 0; });
     coupling_iterations_ = report_.iterations = 0;

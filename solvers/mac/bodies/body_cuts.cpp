@@ -116,10 +116,12 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
             const Face f{a, open.linear(I), moves_at<D>(a, r)};
             faces_[b].push_back(f);
             const real closed = (1 - open(I)) * area;
+            const bool on_wall = (I[a] == 0 && !s.sides.open(a, 0)) || (I[a] == s.u.cells[a] && !s.sides.open(a, 1));
             const auto count = [&](const Index<D>& cell, real flux) {
-                if (s.cells(cell) == Cell::solid) return;
-                Cut& c = cut(s.cells.linear(cell), b);
-                for (std::size_t k = 0; k < n; ++k) c.out[k] += flux * f.moves[k];
+                const bool shut = s.cells(cell) == Cell::solid;
+                if (shut && (on_wall || !density_of_cell_ || !is_sealed(s, solids, own, cell))) return;
+                rigid::Twist<D>& out = shut ? sealed_.emplace_back(Sealed{s.cells.linear(cell), {}}).out : cut(s.cells.linear(cell), b).out;
+                for (std::size_t k = 0; k < n; ++k) out[k] += flux * f.moves[k];
             };
             if (I[a] > 0) count(I - e<D>(a), closed);
             if (I[a] < s.u.cells[a]) count(I, -closed);
@@ -130,6 +132,76 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
                 if (part[i] != 1) see(I);
         });
     }
+    if (!sealed_.empty()) pass_on_sealed(s, b);
+}
+
+/// Returns whether a closed cell lies between the body and something else: it has a face on a wall, or one that another solid closes.
+template <int D>
+bool BodiesInFlow<D>::is_sealed(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t own, const Index<D>& I) const {
+    for (int a = 0; a < D; ++a)
+        for (const int end : {0, 1}) {
+            const Index<D> F = end == 0 ? I : I + e<D>(a);
+            const bool on_side = F[a] == 0 || F[a] == s.u.cells[a];
+            if (on_side && !s.sides.open(a, end)) return true;
+            if (near_.size() > 1 && solids.nearest(s.u.face_centre(a, F), near_) != own) return true;
+        }
+    return false;
+}
+
+/// What a body drives out of sealed cells escapes to the open cells around each group of them, in equal parts, and their pressure acts in
+/// it: a film too thin for the grid leaves and enters freely. Otherwise a body that touches a wall would feel the pressure of one side
+/// alone, and in a closed tank that is known up to a constant only.
+template <int D>
+void BodiesInFlow<D>::pass_on_sealed(const MacState<D>& s, std::size_t body) {
+    std::stable_sort(sealed_.begin(), sealed_.end(), [](const Sealed& x, const Sealed& y) { return x.cell < y.cell; });
+    std::vector<std::size_t> group, rim;
+    std::vector<char> seen(sealed_.size(), 0);
+    const auto each_at = [&](std::size_t cell, auto&& f) {
+        for (auto at = std::lower_bound(sealed_.begin(), sealed_.end(), cell, [](const Sealed&x, std::size_t c) { return x.cell < c; });
+             at != sealed_.end() && at->cell == cell; ++at)
+            f(static_cast<std::size_t>(at - sealed_.begin()));
+    };
+    for (std::size_t first = 0; first < sealed_.size(); ++first) {
+        if (seen[first]) continue;
+        Twist<D> out{};
+        group.assign(1, sealed_[first].cell), rim.clear();
+        for (std::size_t i = 0; i < group.size(); ++i) {
+            each_at(group[i], [&](std::size_t at) {
+                for (std::size_t k = 0; k < n && !seen[at]; ++k) out[k] += sealed_[at].out[k];
+                seen[at] = 1;
+            });
+            const Index<D> I = index_of<D>(s.extent(), group[i]);
+            for (int a = 0; a < D; ++a)
+                for (const int way : {-1, 1}) {
+                    Index<D> J = I;
+                    J[a] += way;
+                    if (J[a] < 0 || J[a] >= s.u.cells[a]) continue;
+                    const std::size_t cell = s.cells.linear(J);
+                    if (s.cells[cell] == Cell::fluid) rim.push_back(cell);
+                    bool fresh = false;
+                    each_at(cell, [&](std::size_t at) { fresh |= !seen[at]; });
+                    if (fresh && std::find(group.begin(), group.end(), cell) == group.end()) group.push_back(cell);
+                }
+        }
+        std::sort(rim.begin(), rim.end());
+        rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
+        for (const std::size_t cell : rim)
+            for (std::size_t k = 0; k < n; ++k) {
+                const real part = out[k] / static_cast<real>(rim.size());
+                Cut& c = cut(cell, body);
+                c.out[k] += part, c.passed[k] += part;
+            }
+    }
+    sealed_.clear();
+}
+
+/// What the present velocities drive out of sealed cells is not in the divergence of the grid.
+template <int D>
+void BodiesInFlow<D>::add_sealed(const MacState<D>& s, real dt, Grid<real, D>& b) const {
+    for (std::size_t i = 0; i < bodies_.count(); ++i)
+        for (const Cut& c : cuts_[i])
+            for (std::size_t k = 0; k < n; ++k)
+                if (c.passed[k] != 0) b[c.cell] -= h2_ * s.rho / (dt * cell_) * c.passed[k] * bodies_[i].velocity[k];
 }
 
 template <int D>
@@ -166,7 +238,7 @@ template <int D>
 Twist<D> BodiesInFlow<D>::force(const MacState<D>& s, std::size_t body) const {
     Twist<D> sum = push(body, s.p);
     for (const Cut& c : cuts_[body])
-        for (std::size_t k = 0; s.cells[c.cell] == Cell::fluid && k < n; ++k) sum[k] += c.out[k] * s.rho * c.below;
+        for (std::size_t k = 0; s.cells[c.cell] == Cell::fluid && k < n; ++k) sum[k] += c.out[k] * density(s, c.cell) * c.below;
     return sum;
 }
 
@@ -182,14 +254,25 @@ real BodiesInFlow<D>::liquid_fraction(const MacState<D>& s, std::size_t body) co
     return all > 0 ? wet / all : 0;
 }
 
-/// Weight minus the discrete buoyancy of fluid with the body's density, as force and torque: a body as dense as the fluid is balanced
-/// exactly. In air a body has its full weight.
+/// The mean over the body's surface, as resolved by the cells.
 template <int D>
-Twist<D> BodiesInFlow<D>::weight(std::size_t b) const {
+real BodiesInFlow<D>::density_around(const MacState<D>& s, std::size_t body) const {
+    real all = 0, sum = 0;
+    for (const Cut& c : cuts_[body])
+        for (std::size_t k = 0; k < D; ++k) all += std::abs(c.out[k]), sum += std::abs(c.out[k]) * density(s, c.cell);
+    return all > 0 ? sum / all : 0;
+}
+
+/// Weight, and the error of the discrete buoyancy: that of fluid with the body's density (in lighter fluid: with the density
+/// around it), less the exact one. A body as dense as the fluid is balanced exactly. In air a body has its full weight.
+template <int D>
+Twist<D> BodiesInFlow<D>::weight(const MacState<D>& s, std::size_t b) const {
     const Body<D>& body = bodies_[b];
-    const Vec<D> r = body.pose().to_world(body.moments.centre) - body.at, own = body.mass * gravity_;
+    const Vec<D> r = body.pose().to_world(body.moments.centre) - body.at, weight = body.mass * gravity_;
+    const real density = density_of_cell_ ? std::min(body.density(), density_around(s, b)) : body.density();
+    const Vec<D> own = density_of_cell_ ? density * body.moments.volume * gravity_ : weight;
     Twist<D> sum{}, even{};  // even: for uniform density, exact
-    for (std::size_t a = 0; a < D; ++a) sum[a] = even[a] = own[a];
+    for (std::size_t a = 0; a < D; ++a) sum[a] = weight[a], even[a] = own[a];
     if (body.wet == 0) return sum;
     if constexpr (D == 2)
         even[2] = r[0] * own[1] - r[1] * own[0];
@@ -198,7 +281,7 @@ Twist<D> BodiesInFlow<D>::weight(std::size_t b) const {
             even[static_cast<std::size_t>(3 + a)] = r[(a + 1) % 3] * own[(a + 2) % 3] - r[(a + 2) % 3] * own[(a + 1) % 3];
     for (std::size_t k = 0; k < n; ++k) {
         real seen = 0;
-        for (const Cut& c : cuts_[b]) seen -= body.density() * c.out[k] * c.deep;
+        for (const Cut& c : cuts_[b]) seen -= density * c.out[k] * c.deep;
         sum[k] += body.wet * (seen - even[k]);
     }
     return sum;
@@ -223,14 +306,14 @@ rigid::Block<D> BodiesInFlow<D>::mass_of(std::size_t b) const {
 template <int D>
 rigid::Block<D> BodiesInFlow<D>::mass_of_wet_surface(const MacState<D>& s, std::size_t body) const {
     rigid::Block<D> m{};
-    const real layer = s.rho * bodies_[body].radius * (D == 2 ? 1 : 0.5);
+    const real layer = bodies_[body].radius * (D == 2 ? 1 : 0.5);
     for (const Cut& c : cuts_[body]) {
         if (s.cells[c.cell] != Cell::fluid) continue;
         real area = 0;
         for (std::size_t k = 0; k < D; ++k) area += c.out[k] * c.out[k];
         if (area == 0) continue;
         for (std::size_t k = 0; k < n; ++k)
-            for (std::size_t l = 0; l < n; ++l) m[k][l] += layer / std::sqrt(area) * c.out[k] * c.out[l];
+            for (std::size_t l = 0; l < n; ++l) m[k][l] += density(s, c.cell) * layer / std::sqrt(area) * c.out[k] * c.out[l];
     }
     return m;
 }

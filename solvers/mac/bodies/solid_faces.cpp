@@ -194,6 +194,7 @@ void SolidPlacement<D>::close(MacState<D>& s, std::size_t box, const Index<D>& I
 template <int D>
 void SolidPlacement<D>::place_cells(MacState<D>& s, std::size_t box) const {
     const Index<D>&lo = changed_[box].lo, hi = changed_[box].hi;
+    const auto passes = [&](int a, int end) { return s.sides.periodic(a) || s.sides.open(a, end); };
     for_each_held_row(s.cells, lo, hi, [&](const Index<D>& I, int count) {
         std::array<const real*, 2 * D> w;
         for (int a = 0; a < D; ++a) {
@@ -203,7 +204,11 @@ void SolidPlacement<D>::place_cells(MacState<D>& s, std::size_t box) const {
         Cell* cell = &s.cells(I);
         for (int i = 0; i < count; ++i) {
             bool open = false;
-            for (std::size_t k = 0; k < 2 * D; ++k) open |= w[k][i] > 0;
+            for (int a = 0; a < D; ++a) {
+                const int at = a == 0 ? I[0] + i : I[a];
+                const bool lower = at > 0 || passes(a, 0), upper = at + 1 < s.u.cells[a] || passes(a, 1);
+                open |= (lower && w[static_cast<std::size_t>(2 * a)][i] > 0) || (upper && w[static_cast<std::size_t>(2 * a + 1)][i] > 0);
+            }
             cell[i] = open ? Cell::fluid : Cell::solid;
         }
     });
