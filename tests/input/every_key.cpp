@@ -194,7 +194,7 @@ std::map<std::string, Said> everything() {
                   "gas = { density = 0.1, viscosity = 1 }\neffects.viscosity = {}\nfluid.viscosity = 1", "initial.liquid_velocity = [1, 0]",
                   rolls, hand, inflow + ", fluid = \"gas\" }, x_max = \"outflow\" }",
                   "sides = { x_min = { kind = \"outflow\", fluid = \"liquid\" }, x_max = { kind = \"open\", fluid = \"gas\" } }"}),
-        all(Lines{inflow + " } }"}, endless_bodies), Lines{wet_mesh}};
+        all(Lines{inflow + " } }"}, endless_bodies), Lines{"gas = { density = 0.1 }\n" + wet_mesh}};
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
                             Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",
