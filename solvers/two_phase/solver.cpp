@@ -94,6 +94,7 @@ template <int D>
 void TwoPhase<D>::see_solids() {
     continued_ = ContinuedFractions<D>(state_, around_);
     if (solids_.moving()) visible_.see_solids(solids_, state_);
+    if (viscosity_) viscosity_->see_solids(state_, solids_);
 }
 
 /// The fractions of the faces' volumes, and the response of their velocity to the pressure.

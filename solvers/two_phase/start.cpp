@@ -135,9 +135,13 @@ void TwoPhase<D>::place_solids(const scene::Scene& scene) {
                      "solver \"two_phase\" has no contact angle at solids, so it does not support surface tension together with them",
                      "without solids, or without surface tension");
     open_flow_ = PaddedVelocity<D>(state_.u);
-    if (solids_.moving() && scene.effect("viscosity"))
-        scene.refuse("effects.viscosity", "solver \"two_phase\" does not support viscosity together with moving solids",
-                     "without viscosity, or with solids at rest");
+    if (bodies_ && scene.effect("viscosity"))
+        for (const auto& body : bodies_->bodies().all())
+            if (body.no_slip)
+                scene.refuse(
+                    "effects.viscosity",
+                    "solver \"two_phase\" has no friction on bodies, so it does not support viscosity together with slip = \"no\" on them",
+                    "without viscosity, or with slip = \"free\" on all bodies");
     see_solids();
     if (solids_.moving()) require_room(scene);
 }

@@ -34,9 +34,16 @@ Viscosity<D>::Viscosity(const MacState<D>& state, const SolidPlacement<D>& solid
       cycled_(residual_),
       multigrid_(state.extent(), state.u.h, homogeneous<D>(state.boundary)) {
     for (int b = 1; b < D; ++b)
+        for (int a = 0; a < b; ++a) edge(a, b) = Grid<real, D>(Extent<D>(state.u.cells + e<D>(a) + e<D>(b)));
+    if (solids.any()) see_solids(state, solids);
+}
+
+template <int D>
+void Viscosity<D>::see_solids(const MacState<D>& state, const SolidPlacement<D>& solids) {
+    for (int b = 1; b < D; ++b)
         for (int a = 0; a < b; ++a) {
-            edge(a, b) = Grid<real, D>(Extent<D>(state.u.cells + e<D>(a) + e<D>(b)));
-            if (solids.any()) find_solid_edges(state, solids, a, b);
+            solid_edges_[edge_number(a, b)].clear();
+            find_solid_edges(state, solids, a, b);
         }
 }
 

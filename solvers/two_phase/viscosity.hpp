@@ -17,6 +17,8 @@ class Viscosity {
 public:
     /// mu_liquid, mu_gas: dynamic viscosities [Pa s].
     Viscosity(const MacState<D>& state, const SolidPlacement<D>& solids, real mu_liquid, real mu_gas);
+    /// Called after solids were placed.
+    void see_solids(const MacState<D>& state, const SolidPlacement<D>& solids);
     /// u* → u over dt. `f`: fractions of cells with a layer of ghosts; `faces`: of the faces' volumes.
     void apply(MacState<D>& state, const Padded<D>& f, const FaceFractions<D>& faces, const Densities& rho, real dt);
     int iterations() const { return iterations_; }

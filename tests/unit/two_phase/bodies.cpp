@@ -1,6 +1,8 @@
 // Rigid bodies among liquid and gas: added mass in either fluid, streams, volumes, symmetries.
 #include "support.hpp"
 
+#include "core/error.hpp"
+
 namespace body_tests {
 
 using namespace weir;
@@ -144,6 +146,17 @@ TEST_IN_2D_AND_3D("a light box comes to rest below the lid of a closed tank, and
             EXPECT_NEAR(body_height(solver), rest, 0.01 / 32) << density << ' ' << shift;
             EXPECT_NEAR(body_velocity(solver)[1], 0, 0.01) << density << ' ' << shift;
         }
+}
+
+TEST("friction on bodies is refused, with the key") {
+    const std::string scene = tank<2>(ball<2>({"0.5", "0.5"}, "0.1", "500.0", ", slip = \"no\""), "0.4");
+    try {
+        TwoPhase<2> solver(two_phase_scene(scene, {{"effects.viscosity", "{}"}, {"fluid.viscosity", "1e-6"}}));
+        ADD_FAILURE() << "accepted";
+    } catch (const BadInput& bad) {
+        for (const char* part : {"effects.viscosity", "slip = \"no\"", "friction on bodies"})
+            EXPECT_NE(std::string(bad.what()).find(part), std::string::npos) << bad.what();
+    }
 }
 
 // Multigrid visits cells in another order: the tolerance 1e-10 of the solve, over 15 steps.

@@ -44,6 +44,25 @@ TEST("steady shear of two layers has one stress") {
     EXPECT_NEAR(u({{0, n - 1}}), 1 - stress * 0.5 * h / gas, 1e-6);
 }
 
+// A plate without slip that moves along itself, on a grid line, is a moving wall; both solves end at 1e-10.
+TEST("a plate in motion shears both fluids as a moving wall of the domain does") {
+    const std::string lid = "y_min = { kind = \"wall\", slip = \"no\" }, y_max = { kind = \"wall\", slip = \"no\" }";
+    TwoPhase<2> plate(
+        two_phase_scene(layers(lid), {{"solids",
+                                       "[ { shape = \"box\", min = [-100.0, -1.0], max = [100.0, 0.25], slip = \"no\", motion = { kind "
+                                       "= \"constant\", velocity = [0.5, 0.0] } } ]"}}));
+    TwoPhase<2> wall(two_phase_scene(layers("y_min = { kind = \"moving_wall\", velocity = [0.5, 0.0] }, y_max = { kind = \"wall\", slip = "
+                                            "\"no\" }",
+                                            12),
+                                     {{"grid.size", "[0.25, 0.75]"}, {"grid.origin", "[0.0, 0.25]"}}));
+    for (int step = 0; step < 30; ++step) {
+        plate.step(0.05), wall.step(0.05);
+        for (int j = 0; j < 12; ++j)
+            ASSERT_NEAR(plate.state().u[0]({{1, j + 4}}), wall.state().u[0]({{1, j}}), 1e-8) << "step " << step << ", row " << j;
+    }
+    EXPECT_GT(wall.state().u[0]({{1, 8}}), 0.01);
+}
+
 // cos(pi y) between walls without friction is a mode of the discrete operator, with the eigenvalue 2 (1 - cos(pi h)) / h^2; a step is
 // implicit (backward Euler). The tolerance of the viscous solve is 1e-10.
 TEST("a shear wave decays by its eigenvalue, implicit in time") {
