@@ -30,11 +30,8 @@ TEST("what is not supported is refused by name") {
     has(refusal(text, {{"sides.x_min", "{ kind = \"inflow\", velocity = [1.0, 0.0] }"}}), "inflow");
     const std::string ball = "{ shape = \"sphere\", centre = [0.5, 0.5], radius = 0.1";
     has(refusal(text, {{"solids", "[ " + ball + " } ]"}}), "surface_tension");
-    has(refusal(text, {{"solids", "[ " + ball + ", motion = { kind = \"constant\", velocity = [1.0, 0.0] } } ]"},
-                       {"effects", "{ viscosity = {} }"}}),
-        "without viscosity, or with solids at rest");
     has(refusal(text, {{"emitters", "[ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.1 } ]"}}), "emitters");
-    has(refusal(text, {{"bodies", "[ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.1, density = 500.0 } ]"}}), "bodies");
+    has(refusal(text, {{"bodies", "[ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.1, density = 500.0 } ]"}}), "surface_tension");
     has(refusal(text, {{"effects.volume_control", "{}"}}), "volume_control");
     has(refusal(text, {{"time.cfl", "0.6"}}), "cfl");
     has(refusal(text, {{"liquid", "[]"}}), "liquid");
