@@ -1,4 +1,4 @@
-// Heat in both fluids: its content, its bounds, and conduction against closed forms.
+// Heat in both fluids: its content, its bounds, sides, solids and buoyancy.
 #include "support.hpp"
 
 #include "core/error.hpp"
@@ -10,11 +10,6 @@ using namespace weir::test;
 using two_phase::TwoPhase;
 
 namespace {
-
-template <int D>
-const Grid<real, D>& temperature(const TwoPhase<D>& solver) {
-    return *solver.state().find("temperature");
-}
 
 /// A column of warm liquid, 1000:1, that falls over in a closed tank. Heat capacities of water and air.
 template <int D>
@@ -59,132 +54,6 @@ TEST_IN_2D_AND_3D("heat has the same bits by one thread, by three, and after a r
     expect_reproducible<D>(tumbling<D>("10.0"), 7, 4);
 }
 
-namespace {
-
-/// Liquid below (or above) `level` along an axis of a unit box, n cells along it and 4 along the others, at rest.
-template <int D>
-scene::Scene layers(int axis, int n, real level, bool above, const std::string& more) {
-    std::vector<std::string> cells(D, "4"), size(D, fmt::format("{}", 4.0 / n)), lo(D, "-1.0"), hi(D, "2.0");
-    const auto at = static_cast<std::size_t>(axis);
-    cells[at] = std::to_string(n), size[at] = "1.0", (above ? lo : hi)[at] = fmt::format("{}", level);
-    return two_phase_scene(fmt::format(R"(solver = "two_phase"
-dim = {}
-grid = {{ cells = {}, size = {} }}
-time = {{ end = 1.0 }}
-liquid = [ {{ shape = "box", min = {}, max = {} }} ]
-effects = {{ heat = {{}} }}
-{}
-)",
-                                       D, list(cells, D), list(size, D), list(lo, D), list(hi, D), more));
-}
-
-/// rho c and k of a liquid and a gas whose layers of diffusion are alike: 8 and 2, 1 and 0.5.
-const char* const contact = R"(fluid = { density = 1000.0, heat_capacity = 0.008, conductivity = 2.0 }
-gas = { density = 1.0, heat_capacity = 1.0, conductivity = 0.5 }
-initial = { temperature = { name = "constant", value = 1.0 }, liquid_temperature = 3.0 }
-)";
-
-/// Two half-spaces of temperatures 3 and 1 in contact since t = 0, at distance s above the surface of the liquid (Carslaw & Jaeger 1959,
-/// §2.15).
-real half_spaces(real s, real t) {
-    const real e_l = std::sqrt(2.0 * 8), e_g = std::sqrt(0.5 * 1), between = (e_l * 3 + e_g * 1) / (e_l + e_g);
-    const real alpha = s < 0 ? 2.0 / 8 : 0.5 / 1, far = s < 0 ? 3 : 1;
-    return between + (far - between) * std::erf(std::abs(s) / (2 * std::sqrt(alpha * t)));
-}
-
-/// The largest error of n cells at t = 0.01 in steps of h²/6.
-template <int D>
-real contact_error(int axis, int n, real level, bool above) {
-    TwoPhase<D> solver(layers<D>(axis, n, level, above, contact));
-    const real end = 0.01;
-    const int steps = n * n * 6 / 100;
-    for (int i = 0; i < steps; ++i) solver.step(end / steps);
-    return max_over(temperature(solver).extent(), [&](const Index<D>& I) {
-        const real s = (above ? -1 : 1) * (solver.state().u.cell_centre(I)[axis] - level);
-        return std::abs(temperature(solver)(I) - half_spaces(s, end));
-    });
-}
-
-}  // namespace
-
-// Of second order in h and of first in dt = h²/6, so errors fall by four, or 3.5 with a rest of higher orders. 1% of the difference of 2 K:
-// the layer in the liquid is √(4 α t) = 0.1 wide, four cells.
-TEST_IN_2D_AND_3D("half-spaces in contact exchange heat as the closed form, wherever the surface stands in its cell") {
-    for (int axis = 0; axis < D; ++axis)
-        for (const bool above : {false, true})
-            for (const real shift : {0.0, 0.25, 0.5, 0.8}) {
-                const int n = 20;
-                const real coarse = contact_error<D>(axis, n, 0.5 + shift / n, above),
-                           fine = contact_error<D>(axis, 2 * n, 0.5 + shift / (2 * n), above);
-                EXPECT_LT(fine, 0.02) << axis << above << shift;
-                EXPECT_GT(coarse / fine, 3.5) << axis << above << shift;
-            }
-}
-
-namespace {
-
-/// The largest error within 0.2 of the middle of a box of n² cells, with a surface whose normal is at an angle to the axes.
-real oblique_error(int n, real angle) {
-    const Vec<2> normal{{std::cos(angle), std::sin(angle)}};
-    TwoPhase<2> solver(two_phase_scene(fmt::format(R"(solver = "two_phase"
-dim = 2
-grid = {{ cells = [{0}, {0}], size = [1.0, 1.0] }}
-time = {{ end = 1.0 }}
-liquid = [ {{ shape = "plane", point = [0.5, 0.5], normal = [{1}, {2}] }} ]
-effects = {{ heat = {{}} }}
-{3}
-)",
-                                                   n, normal[0], normal[1], contact)));
-    const real end = 0.01;
-    const int steps = n * n * 6 / 100;
-    for (int i = 0; i < steps; ++i) solver.step(end / steps);
-    return max_over(temperature(solver).extent(), [&](const Index<2>& I) {
-        const Vec<2> x = solver.state().u.cell_centre(I) - Vec<2>{{0.5, 0.5}};
-        return norm(x) > 0.2 ? 0 : std::abs(temperature(solver)(I) - half_spaces(dot(normal, x), end));
-    });
-}
-
-}  // namespace
-
-// The conductivity of a face has no part across its axis, so errors in the cells of the surface are of first order: they fall by two,
-// or 1.7.
-TEST("half-spaces whose surface is oblique to the grid exchange heat as the closed form") {
-    for (const real degrees : {20.0, 45.0, 110.0}) {
-        const real angle = degrees * pi / 180;
-        const real errors[] = {oblique_error(20, angle), oblique_error(40, angle), oblique_error(80, angle)};
-        EXPECT_LT(errors[1], 0.02) << degrees;
-        for (int i = 0; i < 2; ++i) EXPECT_GT(errors[i] / errors[i + 1], 1.7) << degrees;
-    }
-}
-
-// k_l/k_g = 25 and 1000:1 in ρc. In steps of 1e9 s the content of the cells is 1e-8 of what flows. The tolerance 1e-10 of the solve times
-// the condition of the chain of cells, 16² · 25, is 6e-7 of 120 K.
-TEST_IN_2D_AND_3D("the flux through two layers in series is exact, wherever the surface stands in its cell") {
-    const char* const fluids = R"(fluid = { density = 1000.0, heat_capacity = 1.0, conductivity = 0.625 }
-gas = { density = 1.0, heat_capacity = 1.0, conductivity = 0.025 }
-initial.temperature = { name = "constant", value = 300.0 }
-)";
-    for (int axis = 0; axis < D; ++axis)
-        for (const real level : {0.25, 0.31, 0.5, 0.623}) {
-            const char x = "xyz"[axis];
-            const std::string walls = fmt::format(
-                "sides = {{ {}_min = {{ kind = \"wall\", temperature = 400.0 }}, {}_max = {{ kind = \"wall\", temperature = 280.0 }} }}\n",
-                x, x);
-            TwoPhase<D> solver(layers<D>(axis, 16, level, false, fluids + walls));
-            for (int i = 0; i < 2; ++i) solver.step(1e9);
-            const real added = integral(solver, "heat_added");
-            solver.step(1e9);
-            const real flux = (400 - 280) / (level / 0.625 + (1 - level) / 0.025), through = flux * 1e9 * std::pow(4.0 / 16, D - 1);
-            EXPECT_NEAR((integral(solver, "heat_added") - added) / through, 0, 1e-6) << "what enters leaves";
-            const real worst = max_over(temperature(solver).extent(), [&](const Index<D>& I) {
-                const real at = solver.state().u.cell_centre(I)[axis];
-                const real exact = at < level ? 400 - flux * at / 0.625 : 280 + flux * (1 - at) / 0.025;
-                return std::abs(temperature(solver)(I) - exact);
-            });
-            EXPECT_LT(worst, 7e-5) << axis << " " << level;
-        }
-}
-
 // The walls are the only way in: the content grows by what they add, to the round-off of the sums.
 TEST_IN_2D_AND_3D("walls with a temperature warm a moving liquid, and the balance holds") {
     TwoPhase<D> solver(tumbling<D>(
@@ -226,6 +95,122 @@ TEST_IN_2D_AND_3D("a warm drop that is flung through gas keeps its heat, and the
     EXPECT_NEAR(integral(solver, "coldest"), 290, 1e-6);
     EXPECT_NEAR(integral(solver, "hottest"), 350, 1e-6);
     EXPECT_NEAR(integral(solver, "heat") / heat, 1, 1e-14);
+}
+
+namespace {
+
+/// A channel of 2 m by 1 m (by 0.5 m), 1000:1. Liquid of 320 K enters a bed of 300 K on the left; the right side is open.
+template <int D>
+std::string channel(const std::string& outside) {
+    return fmt::format(R"(solver = "two_phase"
+dim = {}
+grid = {{ cells = {}, size = {} }}
+time = {{ end = 10.0 }}
+fluid = {{ density = 1000.0, heat_capacity = 4000.0, conductivity = 100.0 }}
+gas = {{ density = 1.0, heat_capacity = 1000.0, conductivity = 1.0 }}
+liquid = [ {{ shape = "box", min = {}, max = {} }} ]
+initial = {{ temperature = {{ name = "constant", value = 290.0 }}, liquid_temperature = 300.0 }}
+sides = {{ x_min = {{ kind = "inflow", velocity = {}, temperature = 320.0 }}, x_max = {{ kind = "outflow"{} }} }}
+effects = {{ gravity = {{ g = {} }}, heat = {{}} }}
+scheme = {{ poisson = {{ tolerance = 1e-10 }} }}
+)",
+                       D, list({"24", "12", "6"}, D), list({"2.0", "1.0", "0.5"}, D), list({"-1.0", "-1.0", "-1.0"}, D),
+                       list({"3.0", "0.36", "2.0"}, D), list({"0.8", "0.0", "0.0"}, D), outside, list({"0.0", "-9.81", "0.0"}, D));
+}
+
+}  // namespace
+
+// What the fluxes through sides bring is all that changes the content, to the round-off of sums. Liquid leaves on the right and gas comes
+// in above it, at the given temperature or at that of the fluid within.
+TEST_IN_2D_AND_3D("heat comes in with an inflow and leaves through an open side, and the balance holds") {
+    for (const char* outside : {"", ", temperature = 280.0"}) {
+        TwoPhase<D> solver(two_phase_scene(channel<D>(outside)));
+        const real heat = integral(solver, "heat");
+        for (int step = 0; step < (D == 2 ? 150 : 60); ++step) {
+            solver.step(solver.advised_dt());
+            ASSERT_NEAR((integral(solver, "heat") - integral(solver, "poured_heat")) / heat, 1, 1e-13);
+        }
+        EXPECT_GT(std::abs(integral(solver, "poured_heat")), 0.05 * heat);
+        EXPECT_GT(integral(solver, "liquid_temperature"), 303);
+        EXPECT_NEAR(integral(solver, "hottest"), 320, 1e-6);
+        EXPECT_NEAR(integral(solver, "coldest"), *outside ? 280 : 290, *outside ? 10 : 1e-6);
+    }
+}
+
+// Liquid fills the channel at the speed of the inflow: 4000 · 1000 · 320 J/m³ of it, to the round-off of the fluxes.
+TEST_IN_2D_AND_3D("an inflow brings its volume times its capacity times its temperature") {
+    TwoPhase<D> solver(two_phase_scene(channel<D>(""), {{"effects.gravity.g", list({"0.0", "0.0", "0.0"}, D)},
+                                                        {"liquid", "[ { shape = \"box\", min = " + list({"-1.0", "-1.0", "-1.0"}, D) +
+                                                                       ", max = " + list({"0.5", "2.0", "2.0"}, D) + " } ]"}}));
+    while (solver.time() < 0.5) solver.step(solver.advised_dt());
+    const real area = D == 2 ? 1 : 0.5, entered = 4e6 * 320 * 0.8 * solver.time() * area, left = 1e3 * 290 * 0.8 * solver.time() * area;
+    EXPECT_NEAR(integral(solver, "poured_heat") / (entered - left), 1, 1e-9);  // the divergence that the pressure left
+}
+
+// A ball in the way: its cells hold no fluid and its faces conduct nothing. Contents and bounds are those of the fluids.
+TEST_IN_2D_AND_3D("a solid at rest insulates") {
+    TwoPhase<D> solver(
+        tumbling<D>("50.0", {{"solids", "[ { shape = \"sphere\", centre = " + list({"0.72", "0.2", "0.3"}, D) + ", radius = 0.19 } ]"}}));
+    const real heat = integral(solver, "heat"), coldest = integral(solver, "coldest"), hottest = integral(solver, "hottest");
+    const auto is_solid = [&](const Index<D>& I) { return solver.state().cells(I) == poisson::Cell::solid; };
+    const Grid<real, D> start = temperature(solver);
+    run(solver, D == 2 ? 200 : 60);
+    EXPECT_NEAR(integral(solver, "heat") / heat, 1, 1e-14);
+    EXPECT_GT(integral(solver, "coldest") - coldest, -1e-6);
+    EXPECT_LT(integral(solver, "hottest") - hottest, 1e-6);
+    EXPECT_GT(sum_over(start.extent(), [&](const Index<D>& I) { return is_solid(I) ? 1.0 : 0.0; }), D == 2 ? 15 : 20);
+}
+
+// Uniform density: the pressure takes no curl away. After one step from rest the curl is dt β |g| dT/dx inside each fluid, with T linear in
+// x; round-off of velocities of dt g.
+TEST_IN_2D_AND_3D("buoyancy turns each fluid at the rate of its own expansion") {
+    const auto scene =
+        two_phase_scene(fmt::format(R"(solver = "two_phase"
+dim = {}
+grid = {{ cells = {}, size = {} }}
+time = {{ end = 1.0 }}
+fluid = {{ density = 1000.0, heat_capacity = 4000.0, expansion = 2e-4 }}
+gas = {{ density = 1.0, heat_capacity = 1000.0, expansion = 3e-3 }}
+liquid = [ {{ shape = "box", min = {}, max = {} }} ]
+initial.temperature = {{ name = "formula", value = "7*x + 290" }}
+effects = {{ gravity = {{ g = {} }}, heat = {{ ambient = 293.0 }} }}
+)",
+                                    D, list({"16", "16", "8"}, D), list({"1.0", "1.0", "0.5"}, D), list({"-1.0", "-1.0", "-1.0"}, D),
+                                    list({"2.0", "0.5", "2.0"}, D), list({"0.0", "-9.81", "0.0"}, D)));
+    TwoPhase<D> solver(scene);
+    const real dt = 1e-3, h = 1.0 / 16;
+    solver.step(dt);
+    const auto& u = solver.state().u;
+    for (const int j : {4, 12})
+        for (int i = 3; i < 14; ++i) {
+            Index<D> I{};
+            I[0] = i, I[1] = j;
+            const real curl = (u[1](I) - u[1](I - e<D>(0)) - u[0](I) + u[0](I - e<D>(1))) / h;
+            EXPECT_NEAR(curl / (dt * 9.81 * (j == 4 ? 2e-4 : 3e-3) * 7), 1, 1e-9) << i << " " << j;
+        }
+}
+
+TEST("heat is refused without its capacities, its temperatures, and beside moving solids") {
+    const auto refusal = [](const std::vector<scene::Override>& changes) -> std::string {
+        try {
+            const TwoPhase<2> solver(two_phase_scene(channel<2>(""), changes));
+        } catch (const BadInput& bad) {
+            return bad.what();
+        }
+        return "";
+    };
+    const auto has = [](const std::string& text, const std::string& part) {
+        EXPECT_NE(text.find(part), std::string::npos) << "\"" << part << "\" is not in: " << text;
+    };
+    EXPECT_EQ(refusal({}), "");
+    has(refusal({{"gas", "{ density = 1.0 }"}}), "requires \"gas.heat_capacity\"");
+    has(refusal({{"fluid", "{ density = 1.0 }"}}), "requires \"fluid.heat_capacity\"");
+    has(refusal({{"initial", "{ liquid_temperature = 300.0 }"}}), "requires \"initial.temperature\"");
+    has(refusal({{"sides.x_min", "{ kind = \"inflow\", velocity = [1.0, 0.0] }"}}), "requires \"sides.x_min.temperature\"");
+    has(refusal({{"solids",
+                  "[ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.2, motion = { kind = \"constant\", velocity = [0.1, "
+                  "0.0] } } ]"}}),
+        "heat together with moving solids");
 }
 
 }  // namespace heat_tests

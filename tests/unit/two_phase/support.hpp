@@ -68,6 +68,11 @@ inline real integral(const Solver& solver, const std::string& name) {
 }
 
 template <int D>
+const Grid<real, D>& temperature(const two_phase::TwoPhase<D>& solver) {
+    return *solver.state().find("temperature");
+}
+
+template <int D>
 void run(two_phase::TwoPhase<D>& solver, int steps) {
     for (int step = 0; step < steps; ++step) solver.step(solver.advised_dt());
 }
