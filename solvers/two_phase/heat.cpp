@@ -50,7 +50,8 @@ scene::Variant Heat<D>::schema() {
 
 namespace {
 
-constexpr real sliver = 1e-6;  // part of a cell
+/// The temperature of a fluid is its content over its volume, so round-off matters where it fills less of a cell.
+constexpr real sliver = 1e-6;
 
 real part_of(real fraction, std::size_t phase) { return phase == 0 ? fraction : 1 - fraction; }
 
@@ -125,22 +126,7 @@ CarriedByDust<D> Heat<D>::carried_by_dust() {
 template <int D>
 void Heat<D>::finish_transport(MacState<D>& state) {
     entered_ += state.u.cell_volume() * (capacity_.liquid * own_.entered[0] + capacity_.gas * own_.entered[1]);
-    limit_slivers(state);
     mix(state);
-}
-
-/// The temperature of a fluid is its content over its volume. Where it fills less than a millionth of a cell, round-off of the content
-/// matters: there the temperature is kept between those of all other cells, which changes contents by their round-off.
-template <int D>
-void Heat<D>::limit_slivers(const MacState<D>& state) {
-    const std::array<real, 2> range = range_of(state);
-    if (!(range[0] <= range[1])) return;
-    for (std::size_t phase = 0; phase < 2; ++phase) {
-        Grid<real, D>& T = own_.values[phase];
-        for_each_cell(T.extent(), [&](const Index<D>& I) {
-            if (part_of(state.fields[0].values(I), phase) <= sliver) T(I) = std::clamp(T(I), range[0], range[1]);
-        });
-    }
 }
 
 /// Of the temperatures of fluids that fill more than a sliver of their cells.

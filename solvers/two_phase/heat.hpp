@@ -33,6 +33,7 @@ public:
     void conduct(MacState<D>& state, const Padded<D>& f, const FaceFractions<D>& faces, real dt);
     void add_buoyancy(MacState<D>& state, const FaceFractions<D>& faces, const Vec<D>& gravity, real dt) const;
     void check(const MacState<D>& state) const;
+    /// Of the last solve for conduction.
     int iterations() const { return conduction_ ? conduction_->iterations() : 0; }
 
     void add_integrals(const MacState<D>& state, bool open, std::vector<Integral>& list) const;
@@ -41,7 +42,6 @@ public:
     std::size_t bytes() const;
 
 private:
-    void limit_slivers(const MacState<D>& state);
     std::array<real, 2> range_of(const MacState<D>& state) const;
     void mix(MacState<D>& state) const;
     void share(const Grid<real, D>& fraction, const Grid<real, D>& T, real dt);

@@ -79,6 +79,7 @@ public:
     const Grid<real, D>& fraction() const { return state_.fields[0].values; }
     const Grid<real, D>& curvature() const { return curvature_.kappa; }
     const FaceFractions<D>& face_fractions() const { return faces_; }
+    const Heat<D>* heat() const { return heat_.get(); }
 
 private:
     /// Ghost planes of arrays without a larger requirement: those that readers of fields need.

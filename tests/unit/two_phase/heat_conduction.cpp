@@ -105,6 +105,18 @@ TEST("half-spaces whose surface is oblique to the grid exchange heat as the clos
     }
 }
 
+// Also the fluids in the cells of the surface, which is in the middle of cells here. The tolerance 1e-10 of the solve times the condition
+// of the chain of cells, 16² · 4, is 1e-7 of 2 K.
+TEST_IN_2D_AND_3D("liquid and gas in a closed box reach one temperature, that of their heat") {
+    TwoPhase<D> solver(layers<D>(0, 16, 0.53, false, contact));
+    const real heat = integral(solver, "heat");
+    for (int i = 0; i < 3; ++i) solver.step(1e6);
+    EXPECT_NEAR(integral(solver, "heat") / heat, 1, 1e-14);
+    const real exact = (0.53 * 8 * 3 + 0.47 * 1 * 1) / (0.53 * 8 + 0.47 * 1);
+    EXPECT_NEAR(integral(solver, "coldest"), exact, 2e-7);
+    EXPECT_NEAR(integral(solver, "hottest"), exact, 2e-7);
+}
+
 // k_l/k_g = 25 and 1000:1 in ρc. In steps of 1e9 s the content of the cells is 1e-8 of what flows. The tolerance 1e-10 of the solve times
 // the condition of the chain of cells, 16² · 25, is 6e-7 of 120 K.
 TEST_IN_2D_AND_3D("the flux through two layers in series is exact, wherever the surface stands in its cell") {
