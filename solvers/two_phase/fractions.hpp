@@ -54,6 +54,8 @@ public:
     FractionGhosts() = default;
     /// `component`: the axis of the faces, of which the first and last lie on sides; −1: cells.
     FractionGhosts(const geometry::Sides<D>& sides, int component, const EnteringFractions<D>& entering);
+    /// Of another quantity of cells: with these conditions, and these values where fluid enters.
+    FractionGhosts(const Boundary<D>& boundary, const EnteringFractions<D>& entering) : boundary_(boundary), entering_(entering) {}
     void fill_all(Padded<D>& to, const Grid<real, D>& from) const;
     /// From the values of the inner box.
     void fill_outer(Padded<D>& q) const;

@@ -95,14 +95,14 @@ Heat<D>::Heat(const scene::Scene& scene, const MacState<D>& state, const Densiti
     require(scene, "initial.temperature", "heat starts with it");
     capacity_ = {rho.liquid * scene.number("fluid.heat_capacity"), rho.gas * scene.number("gas.heat_capacity")};
     expansion_ = {rho.liquid * scene.number("fluid.expansion"), rho.gas * scene.number("gas.expansion")};
-    own_.ghosts = FractionGhosts<D>(state.sides, -1, entering_temperatures<D>(scene, state.sides));
+    const Boundary<D> sides = conducting_sides<D>(state.sides);
+    own_.ghosts = FractionGhosts<D>(sides, entering_temperatures<D>(scene, state.sides));
     for (std::size_t phase = 0; phase < 2; ++phase) {
         own_.values[phase] = Grid<real, D>(state.extent());
         own_.padded[phase] = Padded<D>(state.extent());
         own_.flux[phase] = Grid<real, D>(Transport<D>::flux_extent(state), 0, 1);
     }
     const Densities conductivity{scene.number("fluid.conductivity"), scene.number("gas.conductivity")};
-    const Boundary<D> sides = conducting_sides<D>(state.sides);
     if (conductivity.liquid > 0 || conductivity.gas > 0)
         conduction_ = std::make_unique<HeatConduction<D>>(state, capacity_, conductivity, sides);
 }

@@ -32,7 +32,7 @@ struct PhaseValues {
     std::array<Grid<real, D>, 2> values;  // in cells without the fluid: without meaning
     std::array<Padded<D>, 2> padded;      // scratch of the transport
     std::array<Grid<real, D>, 2> flux;    // likewise, with the extents of Transport::flux_extent
-    FractionGhosts<D> ghosts;             // the conditions at the sides: what enters there, or mirrored
+    FractionGhosts<D> ghosts;             // the conditions at the sides: what enters there, or those of the quantity
     std::array<real, 2> entered{};        // through open sides and inflows in the last step, less what left [times cells]
     std::size_t bytes() const;
 };

@@ -117,6 +117,26 @@ TEST_IN_2D_AND_3D("liquid and gas in a closed box reach one temperature, that of
     EXPECT_NEAR(integral(solver, "hottest"), exact, 2e-7);
 }
 
+// Films of a gas that insulates, far thinner than the divergence that the pressure leaves makes them, in every cell of a liquid that
+// conducts: 1e-9 of a cell, as large as dust. Without them one step brings all to the mean of the walls.
+TEST("films of a gas that insulates do not stop conduction in the liquid") {
+    const auto scene = two_phase_scene(
+        "solver = \"two_phase\"\ndim = 2\ngrid = { cells = [16, 4], size = [1.0, 0.25] }\ntime = { end = 1.0 }\n"
+        "liquid = [ { shape = \"box\", min = [-1.0, -1.0], max = [2.0, 2.0] } ]\neffects = { heat = {} }\n"
+        "fluid = { density = 1000.0, heat_capacity = 1.0, conductivity = 1.0 }\ngas = { density = 1.0, heat_capacity = 1.0 }\n"
+        "initial.temperature = { name = \"constant\", value = 300.0 }\nsides.x_min = { kind = \"wall\", temperature = 400.0 }\n");
+    const TwoPhase<2> solver(scene);
+    const mac::MacState<2>& state = solver.state();
+    mac::Padded<2> f(state.extent());
+    two_phase::FractionGhosts<2>(state.sides, -1, {}).fill_all(f, Grid<real, 2>(state.extent(), 1 - 1e-9));
+    auto faces = solver.face_fractions();
+    for (auto& of_axis : faces) of_axis.fill(1 - 1e-9);
+    Grid<real, 2> T(state.extent(), 300.0);
+    two_phase::HeatConduction<2> conduction(state, {1000, 1}, {1, 0}, state.fields[1].boundary);
+    conduction.apply(state, f, faces, 1e9, T);
+    EXPECT_LT(mac::max_magnitude(T, 400), 1e-3);
+}
+
 // k_l/k_g = 25 and 1000:1 in ρc. In steps of 1e9 s the content of the cells is 1e-8 of what flows. The tolerance 1e-10 of the solve times
 // the condition of the chain of cells, 16² · 25, is 6e-7 of 120 K.
 TEST_IN_2D_AND_3D("the flux through two layers in series is exact, wherever the surface stands in its cell") {
