@@ -224,8 +224,8 @@ void Heat<D>::add_integrals(const MacState<D>& state, bool open, std::vector<Int
     list.push_back({"heat", unit, state.u.cell_volume() * (capacity_.liquid * sum[0] + capacity_.gas * sum[1])});
     list.push_back({"heat_added", unit, added_});
     if (open) list.push_back({"poured_heat", unit, entered_});
-    list.push_back({"liquid_temperature", "K", volume[0] > 0 ? sum[0] / volume[0] : not_applicable});
-    list.push_back({"gas_temperature", "K", volume[1] > 0 ? sum[1] / volume[1] : not_applicable});
+    list.push_back({"liquid_temperature", "K", volume[0] > sliver ? sum[0] / volume[0] : not_applicable});
+    list.push_back({"gas_temperature", "K", volume[1] > sliver ? sum[1] / volume[1] : not_applicable});
     const std::array<real, 2> range = range_of(state);
     list.push_back({"coldest", "K", range[0]});
     list.push_back({"hottest", "K", range[1]});

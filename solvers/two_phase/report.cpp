@@ -79,6 +79,7 @@ void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
     const real cell = state_.u.cell_volume();
     const real liquid = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return room(I) * fraction()(I); });
     const real gas = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return room(I) * (1 - fraction()(I)); });
+    const real least = 1e-6 * cell;  // less is what the divergence that the pressure left makes of a fluid that is not there
     const Vec<D> of_liquid = moment_of_liquid(), of_gas = moment_of_space() - of_liquid;
     list.push_back({"volume", unit, liquid});
     list.push_back({"gas_volume", unit, gas});
@@ -93,9 +94,9 @@ void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
         const real speed = cell * sum_over(state_.extent(), [&](const Index<D>& I) {
                                return room(I) * (1 - fraction()(I)) * 0.5 * (state_.u[d](I) + state_.u[d](I + e<D>(d)));
                            });
-        list.push_back({"centre_" + axis, "m", liquid > 0 ? state_.u.origin[d] + of_liquid[d] / liquid : not_applicable});
-        list.push_back({"gas_centre_" + axis, "m", gas > 0 ? state_.u.origin[d] + of_gas[d] / gas : not_applicable});
-        list.push_back({"gas_velocity_" + axis, "m/s", gas > 0 ? speed / gas : not_applicable});
+        list.push_back({"centre_" + axis, "m", liquid > least ? state_.u.origin[d] + of_liquid[d] / liquid : not_applicable});
+        list.push_back({"gas_centre_" + axis, "m", gas > least ? state_.u.origin[d] + of_gas[d] / gas : not_applicable});
+        list.push_back({"gas_velocity_" + axis, "m/s", gas > least ? speed / gas : not_applicable});
     }
 }
 
