@@ -152,7 +152,7 @@ template <int D>
 void TwoPhase<D>::place_heat(const scene::Scene& scene) {
     if (!scene.effect("heat")) return;
     if (solids_.moving())
-        scene.refuse("effects.heat", "solver \"two_phase\" does not support heat together with moving solids",
+        scene.refuse("effects.heat", "solver \"two_phase\" does not support heat together with moving solids or bodies",
                      "without heat, or with solids at rest");
     heat_ = std::make_unique<Heat<D>>(scene, state_, options_.rho);
     heat_->start(scene, state_);

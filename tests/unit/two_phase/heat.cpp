@@ -266,7 +266,9 @@ TEST("heat is refused without its capacities, its temperatures, and beside movin
     has(refusal({{"solids",
                   "[ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.2, motion = { kind = \"constant\", velocity = [0.1, "
                   "0.0] } } ]"}}),
-        "heat together with moving solids");
+        "heat together with moving solids or bodies");
+    has(refusal({{"bodies", "[ { shape = \"sphere\", centre = [0.5, 0.5], radius = 0.2, density = 500.0 } ]"}}),
+        "heat together with moving solids or bodies");
 }
 
 }  // namespace heat_tests
