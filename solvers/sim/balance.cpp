@@ -99,8 +99,12 @@ std::optional<Balanced> heat(const scene::Scene& scene, const std::vector<Integr
     if (!b || !before || !after) return b;
     const real vapour = value_or_zero(end, "vapour_heat") - value_or_zero(start, "vapour_heat");
     const real added = after->value - before->value - vapour;
-    if (is_closed(scene)) b->inflow = added;
-    explain(*b, std::max({std::abs(b->start), std::abs(b->end), std::abs(added)}));
+    const Integral *poured_before = find(start, "poured_heat"), *poured = find(end, "poured_heat");
+    if (poured_before && poured)
+        b->inflow = added + (poured->value - poured_before->value);
+    else if (is_closed(scene))
+        b->inflow = added;
+    explain(*b, std::max({std::abs(b->start), std::abs(b->end), std::abs(b->inflow.value_or(added))}));
     return b;
 }
 

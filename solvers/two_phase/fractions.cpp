@@ -126,19 +126,40 @@ struct Dust {
         }
         return closest < takes_below;
     }
-    /// The change of cell I: it gives its own dust away, or receives that of neighbours.
-    real change(const Index<D>& I) const {
-        const real f = before(I);
+    /// f(K, liquid that cell I receives from K, which loses as much): I gives its own dust away, or receives that of neighbours.
+    template <class F>
+    void for_each_exchange(const Index<D>& I, F&& f) const {
         Index<D> J;
-        if (const real own = dust_of(f); own != 0) return receiver(I, J) ? -own : 0;
-        if (std::abs(f - 0.5) >= takes_below) return 0;
-        real sum = 0;
+        if (const real own = dust_of(before(I)); own != 0) {
+            if (receiver(I, J)) f(J, -own);
+            return;
+        }
+        if (std::abs(before(I) - 0.5) >= takes_below) return;
         for (const Index<D>& by : offsets) {
             Index<D> K = I + by;
             const real given = dust_of(before(K));
-            if (given != 0 && takes_part(K) && receiver(K, J) && J == I) sum += given;
+            if (given != 0 && takes_part(K) && receiver(K, J) && J == I) f(K, given);
         }
+    }
+    real change(const Index<D>& I) const {
+        real sum = 0;
+        for_each_exchange(I, [&](const Index<D>&, real received) { sum += received; });
         return sum;
+    }
+    /// The value that a fluid (0: the liquid) carries in cell I after the exchange. The fluid that vanishes from a cell leaves with all
+    /// that it carries; the other one comes with what it has where it comes from. What one cell gains the other loses.
+    real value(const Index<D>& I, const Padded<D>& carried, int phase) const {
+        const real part = phase == 0 ? before(I) : 1 - before(I);
+        real content = part * carried(I), fills = part;
+        const bool gives = dust_of(before(I)) != 0;
+        for_each_exchange(I, [&](const Index<D>& K, real liquid) {
+            const real received = phase == 0 ? liquid : -liquid;
+            const Index<D>&giver = gives ? I : K, &taker = gives ? K : I;
+            const bool vanishes = (before(giver) < 0.5) == (phase == 0);
+            content += received * carried(vanishes ? giver : taker);
+            fills += received;
+        });
+        return fills == part || std::abs(fills) < pure ? carried(I) : content / fills;
     }
 };
 
@@ -178,7 +199,8 @@ bool mark_candidates(const real* f, const Strides<D>& stride, int count, real* m
 }  // namespace
 
 template <int D>
-void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f) {
+void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f,
+                  const CarriedByDust<D>* carried) {
     static const std::vector<Index<D>> offsets = neighbours<D>();
     const Dust<D> all{before, around, cells, offsets};
     const Strides<D> stride = strides_of(before);
@@ -187,7 +209,11 @@ void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<p
         if (!mark_candidates<D>(before.at(first), stride, count, mark)) return;
         Index<D> I = first;
         for (int i = 0; i < count; ++i, ++I[0])
-            if (mark[i] > 0 && cells(I) != poisson::Cell::solid) f(I) += all.change(I);
+            if (mark[i] > 0 && cells(I) != poisson::Cell::solid) {
+                for (std::size_t phase = 0; carried && phase < 2; ++phase)
+                    carried->values[phase](I) = all.value(I, carried->before[phase], static_cast<int>(phase));
+                f(I) += all.change(I);
+            }
     });
 }
 
@@ -253,10 +279,11 @@ void start_fractions(const geometry::Shape<D>& liquid, const MacVelocity<D>& gri
     });
 }
 
-#define WEIR_INSTANTIATE(D)                                                                                        \
-    template class FractionGhosts<D>;                                                                              \
-    template class Around<D>;                                                                                      \
-    template void hand_on_dust(const Padded<D>&, const Around<D>&, const Grid<poisson::Cell, D>&, Grid<real, D>&); \
+#define WEIR_INSTANTIATE(D)                                                                                       \
+    template class FractionGhosts<D>;                                                                             \
+    template class Around<D>;                                                                                     \
+    template void hand_on_dust(const Padded<D>&, const Around<D>&, const Grid<poisson::Cell, D>&, Grid<real, D>&, \
+                               const CarriedByDust<D>*);                                                          \
     template void start_fractions(const geometry::Shape<D>&, const MacVelocity<D>&, Grid<real, D>&);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

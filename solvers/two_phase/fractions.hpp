@@ -6,6 +6,7 @@
 #include "mac/grid/state.hpp"
 #include "two_phase/planes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -13,6 +14,13 @@
 namespace weir::two_phase {
 
 using namespace mac;  // the words of the grid are the solver's own
+
+/// The densities of both phases [kg/m³].
+struct Densities {
+    real liquid = 1, gas = 1;
+    real of(real fraction) const { return gas + (liquid - gas) * fraction; }
+    real lightest() const { return std::min(liquid, gas); }
+};
 
 /// Fractions on faces: one grid per axis, of the extent of that velocity component.
 template <int D>
@@ -46,6 +54,8 @@ public:
     FractionGhosts() = default;
     /// `component`: the axis of the faces, of which the first and last lie on sides; −1: cells.
     FractionGhosts(const geometry::Sides<D>& sides, int component, const EnteringFractions<D>& entering);
+    /// Of another quantity of cells: with these conditions, and these values where fluid enters.
+    FractionGhosts(const Boundary<D>& boundary, const EnteringFractions<D>& entering) : boundary_(boundary), entering_(entering) {}
     void fill_all(Padded<D>& to, const Grid<real, D>& from) const;
     /// From the values of the inner box.
     void fill_outer(Padded<D>& q) const;
@@ -83,11 +93,18 @@ void find_face_fractions(const Padded<D>& cells, FaceFractions<D>& faces, FaceFr
 
 /// Fractions within this distance of 0 or 1 are handed to the neighbour that is closest to one half, so that columns of cells end.
 inline constexpr real dust = 1e-9;
+/// What each fluid carries per volume: dust takes it along. `before`: a copy of `values`; entry 0 is of the liquid, entry 1 of the gas.
+template <int D>
+struct CarriedByDust {
+    std::array<Padded<D>, 2>& before;
+    std::array<Grid<real, D>, 2>& values;
+};
 /// Moves dust; the sum is unchanged. Each cell gathers what its neighbours give, in the order of their indices. `f`: the fractions before,
 /// in the grid and with two layers of ghosts. Solid
 /// cells give and take nothing.
 template <int D>
-void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f);
+void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f,
+                  const CarriedByDust<D>* carried = nullptr);
 
 /// The fraction of every cell inside a shape: in cells near its surface by sub-cells, each cut by a plane at the shape's distance.
 template <int D>

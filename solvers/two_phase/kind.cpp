@@ -26,14 +26,17 @@ std::vector<scene::Variant> effect_schemas() {
          {"sigma"}});
     list.push_back(
         {"viscosity", "Viscous stress of both fluids, with fluid.viscosity and gas.viscosity; implicit.", {}, {"fluid.viscosity"}});
+    list.push_back(Heat<2>::schema());
     list.push_back(geometry::brush_schema());
     return list;
 }
 
 namespace {
 
+Key fluid_key() { return {.name = "fluid", .type = Type::table, .keys = Heat<2>::keys_of_a_fluid()}; }
+
 Key gas_key() {
-    return {.name = "gas",
+    Key gas{.name = "gas",
             .type = Type::table,
             .doc = "Properties of the gas, which fills what the liquid leaves.",
             .required = true,
@@ -52,6 +55,8 @@ Key gas_key() {
                       .fallback = 0.0,
                       .min = 0}},
             .example = "gas = { density = 1.2, viscosity = 1.5e-5 }"};
+    for (Key& key : Heat<2>::keys_of_a_fluid()) gas.keys.push_back(std::move(key));
+    return gas;
 }
 
 Key start_keys() {
@@ -61,6 +66,10 @@ Key start_keys() {
                             .doc = "Velocity of the liquid at t = 0, instead of `velocity`; the pressure makes both divergence-free.",
                             .unit = "m/s",
                             .length = -1});
+    initial.keys.push_back({.name = "liquid_temperature",
+                            .type = Type::number,
+                            .doc = "Temperature of the liquid at t = 0, instead of `temperature`. Requires effects.heat.",
+                            .unit = "K"});
     return initial;
 }
 
@@ -85,6 +94,7 @@ Key side_keys() {
 
 void check_parallel(const scene::Scene& scene) {
     if (scene.effect("viscosity")) scene::one_process_only(scene, "effects.viscosity", "viscosity of two phases is");
+    if (scene.effect("heat")) scene::one_process_only(scene, "effects.heat", "heat of two phases is");
     if (scene.has("solids"))
         for (const auto& solid : scene.root().tables("solids"))
             if (solid.has("motion")) scene::one_process_only(scene, "solids", "moving solids among two phases are");
@@ -105,6 +115,7 @@ scene::SolverKind kind() {
                               .doc = "Fraction of a cell that the fastest fluid may leave in one step, all axes together.",
                               .fallback = 0.5,
                               .max = 0.5}}},
+                   fluid_key(),
                    gas_key(),
                    side_keys(),
                    rigid::bodies_key(),
@@ -113,15 +124,15 @@ scene::SolverKind kind() {
                    scheme_key({PoissonChoice::key()}),
                    start_keys()};
     schema.effects = effect_schemas();
-    schema.without = {"emitters", "sides.*.temperature", "sides.*.smoke", "sides.*.profile", "initial.temperature", "initial.smoke"};
+    schema.without = {"emitters", "sides.*.smoke", "sides.*.profile", "initial.smoke"};
     schema.why_without =
         "this solver has walls, inflows, p = 0 on open sides, periodic axes, bodies, and solids, at rest or in a prescribed motion; "
-        "\"mac_water\" has emitters and heat";
+        "\"mac_water\" has emitters and a change of phase";
     return {schema,
             [](const scene::Scene& scene, const Partition& partition) { return mac::make<TwoPhase>(scene, partition); },
             {{"velocity", "pressure", fraction_name, level_set_name},
              {"transport momentum", "transport liquid", "densities", "project"},
-             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ngas = { density = 1.2 }\ninitial.velocity = \"random\""},
+             "liquid = [ { shape = \"box\", min = <0.0>, max = <0.5> } ]\ngas.density = 1.2\ninitial.velocity = \"random\""},
             {.check = check_parallel, .replicated_work = mac::replicated_pressure, .distributed_storage = mac::holds_own_planes}};
 }
 

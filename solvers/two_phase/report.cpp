@@ -79,6 +79,7 @@ void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
     const real cell = state_.u.cell_volume();
     const real liquid = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return room(I) * fraction()(I); });
     const real gas = cell * sum_over(state_.extent(), [&](const Index<D>& I) { return room(I) * (1 - fraction()(I)); });
+    const real least = 1e-6 * cell;  // less is what the divergence that the pressure left makes of a fluid that is not there
     const Vec<D> of_liquid = moment_of_liquid(), of_gas = moment_of_space() - of_liquid;
     list.push_back({"volume", unit, liquid});
     list.push_back({"gas_volume", unit, gas});
@@ -93,9 +94,9 @@ void TwoPhase<D>::add_volumes(std::vector<Integral>& list) const {
         const real speed = cell * sum_over(state_.extent(), [&](const Index<D>& I) {
                                return room(I) * (1 - fraction()(I)) * 0.5 * (state_.u[d](I) + state_.u[d](I + e<D>(d)));
                            });
-        list.push_back({"centre_" + axis, "m", liquid > 0 ? state_.u.origin[d] + of_liquid[d] / liquid : not_applicable});
-        list.push_back({"gas_centre_" + axis, "m", gas > 0 ? state_.u.origin[d] + of_gas[d] / gas : not_applicable});
-        list.push_back({"gas_velocity_" + axis, "m/s", gas > 0 ? speed / gas : not_applicable});
+        list.push_back({"centre_" + axis, "m", liquid > least ? state_.u.origin[d] + of_liquid[d] / liquid : not_applicable});
+        list.push_back({"gas_centre_" + axis, "m", gas > least ? state_.u.origin[d] + of_gas[d] / gas : not_applicable});
+        list.push_back({"gas_velocity_" + axis, "m/s", gas > least ? speed / gas : not_applicable});
     }
 }
 
@@ -133,6 +134,7 @@ std::vector<Integral> TwoPhase<D>::integrals() const {
     for (int a = 0; a < D; ++a) list.push_back({std::string("momentum_") + "xyz"[a], "kg m/s" + per_depth, momentum[a]});
     const char* const rules[bounds] = {"steps_bound_by_speed", "steps_bound_by_tension", "steps_bound_by_gravity"};
     for (std::size_t i = 0; i < bounds; ++i) list.push_back({rules[i], "", static_cast<real>(ruled_[i])});
+    if (heat_) heat_->add_integrals(state_, has_open_sides(), list);
     if (brush_forcing_) geometry::sum_up(*brush_forcing_, D, list);
     if (bodies_)
         for (auto& integral : bodies_->bodies().integrals(gravity_)) list.push_back(std::move(integral));
@@ -145,6 +147,7 @@ void TwoPhase<D>::save(Checkpoint& to) const {
     to.put_value("two_phase.steps", steps_);
     to.put_value("two_phase.ruled", ruled_);
     if (has_open_sides()) to.put_value("two_phase.poured", poured_);
+    if (heat_) heat_->save(to);
     if (brush_forcing_) brush_forcing_->save(to);
     if (bodies_) bodies_->save(to);
     if (solids_.moving()) visible_.save(to);
@@ -156,6 +159,7 @@ void TwoPhase<D>::restore(const Checkpoint& from) {
     steps_ = get_count(from, "two_phase.steps");
     ruled_ = get_counts<bounds>(from, "two_phase.ruled");
     if (has_open_sides()) poured_ = from.get_value<real>("two_phase.poured");
+    if (heat_) heat_->restore(from);
     if (brush_forcing_ && from.has("hand")) brush_forcing_->restore(from);
     whole_ = !own().distributed();
     refresh(state_.u[D - 1], around_.repeats());
@@ -174,7 +178,8 @@ template <int D>
 std::size_t TwoPhase<D>::bytes() const {
     std::size_t total = state_.bytes() + transport_.bytes() + fraction_ghosts_.bytes() + curvature_.bytes() + projection_.bytes() +
                         effects_.bytes() + distance_.bytes() + solids_.bytes() + continued_.bytes() + visible_.bytes() +
-                        (bodies_ ? bodies_->bytes() : 0) + (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0);
+                        (bodies_ ? bodies_->bytes() : 0) + (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0) +
+                        (heat_ ? heat_->bytes() + sizeof(*heat_) : 0);
     for (const auto& fractions : faces_) total += fractions.bytes();
     for (const auto& component : open_flow_.face) total += component.bytes();
     return total;

@@ -21,6 +21,7 @@ StepReport TwoPhase<D>::step(real dt) {
     find_face_densities();                              // ρ_a of the half cells beside each face
     apply_viscosity(dt);                                // (ρ_a − dt ∇·2μD) u = ρ_a u
     effects_.apply(Stage::force, state_, dt, passes_);  // u += dt g
+    apply_heat(dt);                                     // ∂(ρcT)/∂t = ∇·(k ∇T),  u −= dt Σ f_i ρ_i β_i (T − T_0) g / ρ_a
     apply_tension(dt);                                  // u += dt σ κ ∇f / ρ_a
     const poisson::Report poisson =
         mac::explained_by_room(state_, solids_, [&] { return project(dt, bodies_.get()); });  // u −= dt ∇p / ρ_a,  ∇·u = 0
@@ -65,18 +66,35 @@ void TwoPhase<D>::transport(real dt) {
         solids_.set_faces(state_);
         sync_periodic(state_.u, state_.sides);
     }
-    const auto timed = passes_.time("transport liquid");
+    const real entered = advect_cells(motion);
     Grid<real, D>& f = state_.fields[0].values;
-    const real entered = transport_.advect_fraction(motion, fraction_ghosts_, f);
-    poured_ += state_.u.cell_volume() * entered;
-    ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
-    hand_on_dust(fraction_ghosts_, around_, state_.cells, f);
+    const auto timed = passes_.time("transport liquid");
     if (solids_.any()) {
         ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
         continued_.extend(ghosts_of_fraction_, fraction_ghosts_, f);
     }
     if (solids_.moving()) visible_.correct(state_, entered, f);
     distance_is_stale_ = true;
+}
+
+/// The liquid fractions, and the temperature in the same fluxes. Returns the liquid that came in [cells].
+template <int D>
+real TwoPhase<D>::advect_cells(const Motion<D>& motion) {
+    Grid<real, D>& f = state_.fields[0].values;
+    real entered = 0;
+    {
+        const auto timed = passes_.time("transport liquid");
+        entered = transport_.advect_fraction(motion, fraction_ghosts_, f, heat_ ? heat_->carried() : nullptr);
+        poured_ += state_.u.cell_volume() * entered;
+        ghosts_of_fraction_.fill_all(fraction_ghosts_, f);
+        if (!heat_) hand_on_dust(fraction_ghosts_, around_, state_.cells, f);
+    }
+    if (!heat_) return entered;
+    const auto timed = passes_.time("advect fields");
+    const CarriedByDust<D> temperatures = heat_->carried_by_dust();
+    hand_on_dust(fraction_ghosts_, around_, state_.cells, f, &temperatures);
+    heat_->finish_transport(state_);
+    return entered;
 }
 
 /// Faces that a solid uncovers keep the velocity that was advected there.
@@ -132,6 +150,16 @@ void TwoPhase<D>::apply_viscosity(real dt) {
     if (!viscosity_) return;
     const auto timed = passes_.time("effect viscosity");
     viscosity_->apply(state_, fraction_ghosts_, faces_, options_.rho, dt);
+}
+
+template <int D>
+void TwoPhase<D>::apply_heat(real dt) {
+    if (!heat_) return;
+    const auto timed = passes_.time("effect heat");
+    ghosts_of_fraction_.fill_all(fraction_ghosts_, fraction());
+    heat_->conduct(state_, fraction_ghosts_, faces_, dt);
+    heat_->add_buoyancy(state_, faces_, gravity_, dt);
+    heat_->check(state_);
 }
 
 template <int D>

@@ -12,6 +12,7 @@
 #include "mac/grid/state.hpp"
 #include "scene/solver_kind.hpp"
 #include "two_phase/curvature.hpp"
+#include "two_phase/heat.hpp"
 #include "two_phase/moving_solids.hpp"
 #include "two_phase/solids.hpp"
 #include "two_phase/transport.hpp"
@@ -78,6 +79,7 @@ public:
     const Grid<real, D>& fraction() const { return state_.fields[0].values; }
     const Grid<real, D>& curvature() const { return curvature_.kappa; }
     const FaceFractions<D>& face_fractions() const { return faces_; }
+    const Heat<D>* heat() const { return heat_.get(); }
 
 private:
     /// Ghost planes of arrays without a larger requirement: those that readers of fields need.
@@ -88,6 +90,7 @@ private:
     void refuse_sides(const scene::Scene& scene) const;
     bool has_open_sides() const;
     void place_solids(const scene::Scene& scene);
+    void place_heat(const scene::Scene& scene);
     void start_liquid(const scene::Scene& scene);
     void start_bodies(const scene::Scene& scene);
     void start_velocity(const scene::Scene& scene);
@@ -100,6 +103,8 @@ private:
     void see_solids();
     void find_face_densities();
     void use_mean_densities();
+    real advect_cells(const Motion<D>& motion);
+    void apply_heat(real dt);
     void apply_viscosity(real dt);
     void apply_tension(real dt);
     /// `bodies`: those that the pressure moves; nullptr: all move as they do.
@@ -141,6 +146,7 @@ private:
     FaceFractions<D> faces_;
     Curvature<D> curvature_;                   // empty without tension
     std::unique_ptr<Viscosity<D>> viscosity_;  // nullptr without the effect
+    std::unique_ptr<Heat<D>> heat_;            // likewise
     Projection<D> projection_;
     mutable Grid<real, D> distance_;  // for drawing and probes; empty until it is shown
     mutable bool distance_is_stale_ = true;

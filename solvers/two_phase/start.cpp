@@ -26,9 +26,10 @@ Options::Options(const scene::Scene& scene) : poisson(scene.root().table("scheme
 
 namespace {
 
-FieldPlan fields() {
+FieldPlan fields(const scene::Scene& scene) {
     FieldPlan plan;
     plan.advected(fraction_name);
+    if (scene.effect("heat")) plan.advected("temperature");
     return plan;
 }
 
@@ -63,7 +64,7 @@ template <int D>
 TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition& partition, const Experiment& experiment)
     : options_(scene),
       experiment_(experiment),
-      state_(scene, two_phase::fields(), slab_of<D>(scene, partition, planes_beside)),
+      state_(scene, two_phase::fields(scene), slab_of<D>(scene, partition, planes_beside)),
       bodies_(BodiesInFlow<D>::make(scene)),
       solids_(BodiesInFlow<D>::solids(scene, bodies_.get()), state_),
       entering_(entering_fractions<D>(scene, state_.sides, geometry::SideKind::inflow)),
@@ -105,6 +106,7 @@ TwoPhase<D>::TwoPhase(const scene::Scene& scene, const Partition& partition, con
     whole_ = !own().distributed();
     start_liquid(scene);
     if (bodies_) start_bodies(scene);
+    place_heat(scene);
     start_velocity(scene);
     find_rate();
 }
@@ -144,6 +146,17 @@ void TwoPhase<D>::place_solids(const scene::Scene& scene) {
                     "without viscosity, or with slip = \"free\" on all bodies");
     see_solids();
     if (solids_.moving()) require_room(scene);
+}
+
+template <int D>
+void TwoPhase<D>::place_heat(const scene::Scene& scene) {
+    if (!scene.effect("heat")) return;
+    if (solids_.moving())
+        scene.refuse("effects.heat", "solver \"two_phase\" does not support heat together with moving solids or bodies",
+                     "without heat, or with solids at rest");
+    heat_ = std::make_unique<Heat<D>>(scene, state_, options_.rho);
+    heat_->start(scene, state_);
+    effects_.declare({.name = "heat", .pass = effect_pass("heat"), .fields = {"temperature"}, .bytes = heat_->bytes() + sizeof(*heat_)});
 }
 
 template <int D>
@@ -201,6 +214,8 @@ template void TwoPhase<2>::refuse_sides(const scene::Scene&) const;
 template void TwoPhase<3>::refuse_sides(const scene::Scene&) const;
 template void TwoPhase<2>::place_solids(const scene::Scene&);
 template void TwoPhase<3>::place_solids(const scene::Scene&);
+template void TwoPhase<2>::place_heat(const scene::Scene&);
+template void TwoPhase<3>::place_heat(const scene::Scene&);
 template void TwoPhase<2>::require_room(const scene::Scene&) const;
 template void TwoPhase<3>::require_room(const scene::Scene&) const;
 template void TwoPhase<2>::start_liquid(const scene::Scene&);

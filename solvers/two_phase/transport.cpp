@@ -22,7 +22,7 @@ Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& en
       returning_(returning),
       cell_ghosts_(state.sides, -1, entering),
       velocity_(state.u),
-      liquid_flux_(state.u.cells + Index<D>::constant(2), 0, 1),
+      liquid_flux_(flux_extent(state), 0, 1),
       momentum_flux_(liquid_flux_) {
     for (int a = 0; a < D; ++a) {
         face_ghosts_[static_cast<std::size_t>(a)] = FractionGhosts<D>(state.sides, a, entering);
@@ -35,6 +35,9 @@ namespace {
 /// Beyond this ratio between the densities of neighbouring volumes, slopes across them are not used: a gas volume beside a liquid one would
 /// receive a value extrapolated from the other phase.
 constexpr real similar = 0.1;
+/// Of the parts of volumes that one fluid fills: slopes of what it carries are used inside it. A mixed cell may lose nearly all of one
+/// fluid in a step, and a slope would take more than it has.
+constexpr real alike = 0.99;
 
 /// F through a row of faces with pure donors. Returns whether any donor is mixed. `f`: of the volumes above the faces.
 bool find_pure_fluxes(const real* f, std::ptrdiff_t by, const real* C, int count, real* F) {
@@ -51,8 +54,8 @@ bool find_pure_fluxes(const real* f, std::ptrdiff_t by, const real* C, int count
 
 /// The momentum that the mass ρ_l F + ρ_g (C − F) carries through a row of faces: by the velocity that leaves the donor during the step,
 /// from a limited linear reconstruction (van Leer 1977, harmonic) among similar volumes.
-void find_momentum_fluxes(const Densities& rho, const real* f, const real* q, std::ptrdiff_t by, const real* C, const real* F, int count,
-                          real* momentum) {
+void find_momentum_fluxes(const Densities& rho, real nearness, const real* f, const real* q, std::ptrdiff_t by, const real* C,
+                          const real* F, int count, real* momentum) {
 #pragma omp simd
     for (int i = 0; i < count; ++i) {
         const real q0 = q[i - 2 * by], q1 = q[i - by], q2 = q[i], q3 = q[i + by];
@@ -65,7 +68,7 @@ void find_momentum_fluxes(const Densities& rho, const real* f, const real* q, st
         const bool sloped = a * b > 0;
         const real slope = (sloped ? 2 * a * b : 0) / (sloped ? a + b : 1);
         const real leaving = donor + 0.5 * (1 - std::abs(C[i])) * slope;
-        momentum[i] = (rho.liquid * F[i] + rho.gas * (C[i] - F[i])) * (least >= similar * most ? leaving : donor);
+        momentum[i] = (rho.liquid * F[i] + rho.gas * (C[i] - F[i])) * (least >= nearness * most ? leaving : donor);
     }
 }
 
@@ -79,8 +82,10 @@ Vec<D> Transport<D>::per_cell(real dt) const {
 }
 
 template <int D>
-real Transport<D>::advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f) {
-    return run_sweeps({-1, motion, per_cell(motion.dt), f, padded, nullptr, {}, f}, cell_ghosts_, nullptr);
+real Transport<D>::advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f, PhaseValues<D>* carried) {
+    if (carried) carried->entered = {};
+    for (std::size_t phase = 0; carried && phase < 2; ++phase) carried->ghosts.fill_all(carried->padded[phase], carried->values[phase]);
+    return run_sweeps({-1, motion, per_cell(motion.dt), f, padded, nullptr, {}, f, carried}, cell_ghosts_, nullptr);
 }
 
 template <int D>
@@ -99,10 +104,14 @@ real Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_frac
         if (number > 0) {
             of_fraction.fill_outer(v.f);
             if (v.q) fill_ghosts(*v.q, *of_velocity);
+            if (v.carried)
+                for (auto& values : v.carried->padded) v.carried->ghosts.fill_outer(values);
         }
         const int d = v.motion.order[static_cast<std::size_t>(number)];
         find_fluxes(v, d);
-        if (v.component < 0) entered += inflow(v.f.extent(), d);
+        if (v.component < 0) entered += inflow(liquid_flux_, v.f.extent(), d);
+        for (std::size_t phase = 0; v.carried && phase < 2; ++phase)
+            v.carried->entered[phase] += inflow(v.carried->flux[phase], v.f.extent(), d);
         add_fluxes(v, number);
     }
     return entered;
@@ -110,7 +119,7 @@ real Transport<D>::run_sweeps(const Volumes& v, const FractionGhosts<D>& of_frac
 
 /// Of the fluxes of a sweep over cells, through the two sides of its axis.
 template <int D>
-real Transport<D>::inflow(const Extent<D>& cells, int d) const {
+real Transport<D>::inflow(const Grid<real, D>& flux, const Extent<D>& cells, int d) const {
     real sum = 0;
     for (const int end : {0, 1}) {
         const auto kind = sides_.side(d, end).kind;
@@ -121,7 +130,7 @@ real Transport<D>::inflow(const Extent<D>& cells, int d) const {
         const auto sum_of_side = [&] {
             return sum_over(plane, [&](Index<D> I) {
                 I[d] = at;
-                return liquid_flux_(I);
+                return flux(I);
             });
         };
         const real through = d == D - 1 ? of_rank_at(cells.own, end, sum_of_side) : sum_of_side();
@@ -198,7 +207,10 @@ void Transport<D>::find_fluxes(const Volumes& v, int d) {
                 if (is_mixed(f[donor]) && C[i] != 0) F[i] = C[i] * fraction_of_slab<D>(f + donor, stride, d, C[i] > 0 ? 1 : 0, width);
             }
         set_returning(v, d, first, count, C, F);
-        if (v.q) find_momentum_fluxes(v.rho, f, v.q->at(first), by, C, F, count, &momentum_flux_(first));
+        if (v.q) find_momentum_fluxes(v.rho, similar, f, v.q->at(first), by, C, F, count, &momentum_flux_(first));
+        for (std::size_t phase = 0; v.carried && phase < 2; ++phase)
+            find_momentum_fluxes(densities_of_part[phase], alike, f, v.carried->padded[phase].at(first), by, C, F, count,
+                                 &v.carried->flux[phase](first));
     });
 }
 
@@ -217,6 +229,7 @@ void Transport<D>::add_fluxes(const Volumes& v, int number) {
         if (!v.q && v.motion.room) return add_fluxes_in_rooms(v, number, first, count, dilation, shrinks ? driven_out : nullptr);
         const real *F = &liquid_flux_(first), *start = &v.start(first), *f = v.f.at(first);
         if (!v.q) {
+            for (int phase = 0; v.carried && phase < 2; ++phase) add_phase_fluxes(v, number, phase, first, count, dilation);
             real* to = last ? &v.to(first) : v.f.at(first);
 #pragma omp simd
             for (int i = 0; i < count; ++i) to[i] = f[i] + (F[i] - F[i + up] + (start[i] > 0.5 ? dilation[i] : 0));

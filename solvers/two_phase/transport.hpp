@@ -12,13 +12,6 @@
 
 namespace weir::two_phase {
 
-/// The densities of both phases [kg/m³].
-struct Densities {
-    real liquid = 1, gas = 1;
-    real of(real fraction) const { return gas + (liquid - gas) * fraction; }
-    real lightest() const { return std::min(liquid, gas); }
-};
-
 /// The axes of the sweeps of a step: every order in turn.
 template <int D>
 std::array<int, D> sweep_order(std::int64_t step);
@@ -33,6 +26,20 @@ struct Motion {
     const Padded<D>* room = nullptr;  // volumes of cells outside moving solids, which take and leave room; nullptr: nothing moves
 };
 
+/// A quantity per volume that each fluid carries for itself, such as its temperature. Entry 0 is of the liquid, entry 1 of the gas.
+template <int D>
+struct PhaseValues {
+    std::array<Grid<real, D>, 2> values;  // in cells without the fluid: without meaning
+    std::array<Padded<D>, 2> padded;      // scratch of the transport
+    std::array<Grid<real, D>, 2> flux;    // likewise, with the extents of Transport::flux_extent
+    FractionGhosts<D> ghosts;             // the conditions at the sides: what enters there, or those of the quantity
+    std::array<real, 2> entered{};        // through open sides and inflows in the last step, less what left [times cells]
+    std::size_t bytes() const;
+};
+
+/// The part of a volume that the liquid, or the gas, fills: as a density of what it alone carries.
+inline constexpr Densities densities_of_part[] = {{1, 0}, {0, 1}};
+
 template <int D>
 class Transport {
 public:
@@ -40,11 +47,13 @@ public:
     Transport(const MacState<D>& state, const EnteringFractions<D>& entering, const EnteringFractions<D>& returning);
     /// Advects the fractions of cells. Returns the liquid that came in through open sides and inflows, less what left [cells]. `padded`: f
     /// with its ghosts; it is changed.
-    real advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f);
+    /// `carried`: what the fluids carry in the same fluxes, each its own; nullptr: nothing.
+    real advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f, PhaseValues<D>* carried = nullptr);
     /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start;
     /// `carried`: the conditions of the component at the sides; `to`: the new component.
     void advect_momentum(int a, const Motion<D>& motion, const Grid<real, D>& fractions, const Boundary<D>& carried, const Densities& rho,
                          Grid<real, D>& to);
+    static Extent<D> flux_extent(const MacState<D>& state) { return state.u.cells + Index<D>::constant(2); }
     std::size_t bytes() const;
 
 private:
@@ -57,7 +66,8 @@ private:
         Padded<D>& f;                // and now
         Padded<D>* q;                // velocity component in the volumes; nullptr: only liquid is transported
         Densities rho;
-        Grid<real, D>& to;  // the result: velocity component, or fractions of cells
+        Grid<real, D>& to;                  // the result: velocity component, or fractions of cells
+        PhaseValues<D>* carried = nullptr;  // by the fluids in cells
         /// C of the lower faces of a row of volumes along axis d: the mean over the two cells of a face's volume.
         void find_courants(int d, const Index<D>& first, int count, real* C) const;
         /// Adds sign dC of a row of volumes.
@@ -69,11 +79,12 @@ private:
     };
     /// Returns the liquid that crossed open sides and inflows.
     real run_sweeps(const Volumes& v, const FractionGhosts<D>& of_fraction, const Boundary<D>* of_velocity);
-    real inflow(const Extent<D>& cells, int d) const;
+    real inflow(const Grid<real, D>& flux, const Extent<D>& cells, int d) const;
     void find_fluxes(const Volumes& v, int d);
     void set_returning(const Volumes& v, int d, const Index<D>& first, int count, const real* C, real* F) const;
     void add_fluxes(const Volumes& v, int number);
     void add_fluxes_in_rooms(const Volumes& v, int number, const Index<D>& first, int count, const real* dilation, const real* driven_out);
+    void add_phase_fluxes(const Volumes& v, int number, int phase, const Index<D>& first, int count, const real* dilation) const;
 
     Vec<D> per_cell(real dt) const;
 

@@ -195,6 +195,9 @@ std::map<std::string, Said> everything() {
                   rolls, hand, inflow + ", fluid = \"gas\" }, x_max = \"outflow\" }",
                   "sides = { x_min = { kind = \"outflow\", fluid = \"liquid\" }, x_max = { kind = \"open\", fluid = \"gas\" } }"}),
         all(Lines{inflow + " } }"}, endless_bodies), Lines{"gas = { density = 0.1 }\n" + wet_mesh}};
+    const std::string both = "density = 2, heat_capacity = 1, conductivity = 1, expansion = 1 }\n";
+    const std::string with_heat = "gas = { " + both + "fluid = { " + both + "effects.heat.ambient = 1\ninitial.liquid_temperature = 2\n";
+    for (const std::string& line : of_field("temperature", true)) said["two_phase"].lines.push_back(with_heat + line);
     said["tallcell"] = {liquid,
                         all(of_the_run, probes("pressure"), Lines{at_the_wall}, of_the_surface, solids, grid_velocities, Lines{walls[0]},
                             Lines{open_sides[2], open_sides[3], "sides.y_max = \"outflow\"", "effects.volume_control = {}",

@@ -73,9 +73,9 @@ scene::Scene make(const scene::SolverKind& kind, int dim, int cells, const Names
         const scene::Variant& effect = effect_of(kind, name);
         text += effect_text(effect, strength);
         if (std::count(effect.strength.begin(), effect.strength.end(), "fluid.viscosity") > 0)
-            viscosity = fmt::format(", viscosity = {:g}", viscosity_of * strength);
+            viscosity = fmt::format("fluid.viscosity = {:g}\n", viscosity_of * strength);
     }
-    if (!scene::is_without(kind.schema, "fluid")) text += fmt::format("fluid = {{ density = 1000.0{} }}\n", viscosity);
+    if (!scene::is_without(kind.schema, "fluid")) text += "fluid.density = 1000.0\n" + viscosity;
     return scene::parse(for_dim(text, dim), kind.schema.name + ".toml", {kind.schema});
 }
 

@@ -53,8 +53,10 @@ Panel centreline_panel(const RunRecord& run, const Reference& ref, int c) {
 struct Heat {
     real hot, cold, alpha, L, height;
 };
-/// Of the effect, or of the liquid where the scene names a substance [m^2/s].
+/// Of the effect, of the liquid of two phases, or of the liquid where the scene names a substance [m^2/s].
 real diffusivity_of(const scene::Scene& scene) {
+    if (scene.effect("heat"))
+        return scene.number("fluid.conductivity") / (scene.number("fluid.density") * scene.number("fluid.heat_capacity"));
     if (const auto* diffusion = scene.effect("diffusion")) return diffusion->number("temperature");
     return scene.number("substance.liquid.conductivity") / (scene.number("fluid.density") * scene.number("substance.liquid.heat_capacity"));
 }

@@ -57,17 +57,25 @@ REFERENCE(cavity_3d) {
 // Air between a hot and a cold wall. Ra = g beta dT L^3 / (nu alpha) picks the row; speeds in the table are in units of alpha / L.
 namespace {
 
-/// Of the effect, or of the liquid where the scene names a substance [m^2/s].
+/// Of the effect, of the liquid of two phases, or of the liquid where the scene names a substance [m^2/s].
 real diffusivity_of(const scene::Scene& scene) {
+    if (scene.effect("heat"))
+        return scene.number("fluid.conductivity") / (scene.number("fluid.density") * scene.number("fluid.heat_capacity"));
     if (const auto* diffusion = scene.effect("diffusion")) return diffusion->number("temperature");
     return scene.number("substance.liquid.conductivity") / (scene.number("fluid.density") * scene.number("substance.liquid.heat_capacity"));
+}
+
+/// Gravity times expansion [m/(s^2 K)].
+real lift_of(const scene::Scene& scene) {
+    if (scene.effect("buoyancy")) return scene.number("effects.buoyancy.beta");
+    if (scene.effect("heat")) return -scene.effect("gravity")->numbers("g")[1] * scene.number("fluid.expansion");
+    return scene.number("heat.lift") * scene.number("substance.liquid.expansion");
 }
 
 }  // namespace
 
 REFERENCE(heated_cavity) {
-    const real lift = scene.effect("buoyancy") ? scene.number("effects.buoyancy.beta")
-                                               : scene.number("heat.lift") * scene.number("substance.liquid.expansion");
+    const real lift = lift_of(scene);
     const real hot = scene.number("sides.x_min.temperature"), cold = scene.number("sides.x_max.temperature");
     const real L = scene.vec<2>("grid.size")[0], alpha = diffusivity_of(scene);
     const real Ra = lift * (hot - cold) * L * L * L / (scene.number("fluid.viscosity") * alpha);

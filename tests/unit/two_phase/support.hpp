@@ -68,6 +68,11 @@ inline real integral(const Solver& solver, const std::string& name) {
 }
 
 template <int D>
+const Grid<real, D>& temperature(const two_phase::TwoPhase<D>& solver) {
+    return *solver.state().find("temperature");
+}
+
+template <int D>
 void run(two_phase::TwoPhase<D>& solver, int steps) {
     for (int step = 0; step < steps; ++step) solver.step(solver.advised_dt());
 }
@@ -82,7 +87,9 @@ real max_speed(const two_phase::TwoPhase<D>& solver) {
 template <int D>
 bool same_bits(const two_phase::TwoPhase<D>& one, const two_phase::TwoPhase<D>& other) {
     const auto same = [](const auto& a, const auto& b) { return std::equal(a.values().begin(), a.values().end(), b.values().begin()); };
-    bool all = same(one.fraction(), other.fraction()) && same(one.state().p, other.state().p);
+    bool all = same(one.state().p, other.state().p);
+    for (std::size_t i = 0; i < one.state().fields.size(); ++i)
+        all = all && same(one.state().fields[i].values, other.state().fields[i].values);
     for (int a = 0; a < D; ++a) all = all && same(one.state().u[a], other.state().u[a]);
     return all;
 }

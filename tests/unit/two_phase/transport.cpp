@@ -75,4 +75,30 @@ TEST("dust goes to the neighbour that is closest to one half, and the sum stays"
     EXPECT_EQ(f({{10, 10}}), 1e-10);
 }
 
+// 1e-10 of liquid of 350 K leaves a cell of gas for one with 0.4 of it, 2e-10 of gas of 290 K a cell of liquid; as much of the other fluid
+// comes back from there.
+TEST("dust takes its heat along") {
+    const auto scene = two_phase_scene(drop<2>(16));
+    const TwoPhase<2> solver(scene);
+    const mac::MacState<2>& state = solver.state();
+    Grid<real, 2> f(state.extent());
+    f({{5, 5}}) = 0.4, f({{4, 5}}) = 1e-10, f({{5, 4}}) = 1 - 2e-10;
+    const Grid<real, 2> before = f;
+    std::array<Grid<real, 2>, 2> T{Grid<real, 2>(state.extent(), 320.0), Grid<real, 2>(state.extent(), 310.0)};
+    T[0]({{4, 5}}) = 350, T[1]({{5, 4}}) = 290;
+    const two_phase::FractionGhosts<2> ghosts(state.sides, -1, {});
+    mac::Padded<2> padded(state.extent());
+    std::array<mac::Padded<2>, 2> copies{padded, padded};
+    ghosts.fill_all(padded, f);
+    for (std::size_t phase = 0; phase < 2; ++phase) ghosts.fill_all(copies[phase], T[phase]);
+    const two_phase::CarriedByDust<2> carried{copies, T};
+    two_phase::hand_on_dust(padded, two_phase::Around<2>(state.sides, state.u.cells), state.cells, f, &carried);
+    EXPECT_EQ(f({{4, 5}}), 0);
+    EXPECT_EQ(f({{5, 4}}), 1);
+    EXPECT_NEAR((T[0]({{5, 5}}) - 320) / (1e-10 * 30 / 0.4), 1, 1e-3);
+    EXPECT_NEAR((T[1]({{5, 5}}) - 310) / (2e-10 * -20 / 0.6), 1, 1e-3);
+    EXPECT_EQ(T[1]({{4, 5}}), 310) << "gas came, as warm as that of the cell";
+    EXPECT_EQ(T[0]({{5, 4}}), 320);
+}
+
 }  // namespace transport_tests
