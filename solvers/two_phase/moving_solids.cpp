@@ -9,8 +9,13 @@ namespace weir::two_phase {
 
 template <int D>
 void VisibleLiquid<D>::see_solids(const SolidPlacement<D>& solids, const MacState<D>& state) {
-    if (part_.empty()) part_ = Grid<real, D>(state.extent());
-    for_each_cell(state.extent(), [&](const Index<D>& I) { part_(I) = free_surface::open_part_of_cell(solids, I); });
+    const bool first = part_.empty();
+    if (first) part_ = Grid<real, D>(state.extent()), swept_ = Grid<std::uint8_t, D>(state.extent());
+    for_each_cell(state.extent(), [&](const Index<D>& I) {
+        const real part = free_surface::open_part_of_cell(solids, I);
+        swept_(I) = !first && part != part_(I);
+        part_(I) = part;
+    });
 }
 
 template <int D>
@@ -34,20 +39,70 @@ real VisibleLiquid<D>::volume(const Grid<real, D>& f) const {
     return sum_over(f.extent(), [&](const Index<D>& I) { return part_(I) * f(I); });
 }
 
-/// f += λ f (1 − f) in mixed cells, |λ| ≤ 1: f stays in [0, 1]. What this cannot give back is left to the next steps.
+namespace {
+
+/// In cells, along each axis: how far from cells whose open part has changed the surface counts as beside the solid.
+constexpr int beside = 4;
+enum Level { near_solids, surface, mixed_cells, levels };
+
+/// Returns whether the cell lies between liquid and gas: films and dust do not.
+template <int D>
+bool is_surface(const Grid<real, D>& f, const Index<D>& I) {
+    real least = 1, most = 0;
+    for (int d = 0; d < D; ++d)
+        for (const int way : {-1, 1}) {
+            Index<D> J = I;
+            J[d] += way;
+            if (f.contains(J)) least = std::min(least, f(J)), most = std::max(most, f(J));
+        }
+    return least < 0.5 && most >= 0.5;
+}
+
+}  // namespace
+
+template <int D>
+bool VisibleLiquid<D>::is_swept_beside(const Index<D>& I) const {
+    CellBox<D> box{I, I + Index<D>::constant(1)};
+    bool swept = false;
+    box.grown(Index<D>::constant(beside), part_.extent()).rows([&](const Index<D>& first, int count) {
+        const std::uint8_t* at = &swept_(first);
+        for (int i = 0; i < count && !swept; ++i) swept = at[i] != 0;
+    });
+    return swept;
+}
+
+/// What this cannot give back is left to the next steps.
 template <int D>
 void VisibleLiquid<D>::correct(const MacState<D>& state, real entered, Grid<real, D>& f) {
     target_ += entered;
     for_each_cell(f.extent(), [&](const Index<D>& I) {
         if (part_(I) < 1) f(I) = std::clamp(f(I), 0.0, 1.0);
     });
-    const auto gives = [&](const Index<D>& I) { return is_open(state, I) && is_mixed(f(I)) ? f(I) * (1 - f(I)) : 0; };
     const real missing = target_ - volume(f);
-    const real available = sum_over(f.extent(), [&](const Index<D>& I) { return part_(I) * gives(I); });
-    if (available == 0 || missing == 0) return;
+    if (missing == 0) return;
+    if (gives_.empty()) gives_ = Grid<real, D>(f.extent());
+    for (int level = 0; level < levels; ++level)
+        if (const real corrected = give_back(state, level, missing, f); corrected != 0) {
+            corrected_[0] += corrected, corrected_[1] += std::abs(corrected);
+            return;
+        }
+}
+
+/// f += λ f (1 − f) in the cells of a level, |λ| ≤ 1: f stays in [0, 1]. Returns the liquid that this adds [cells].
+template <int D>
+real VisibleLiquid<D>::give_back(const MacState<D>& state, int level, real missing, Grid<real, D>& f) {
+    for_each_cell(f.extent(), [&](const Index<D>& I) {
+        gives_(I) = 0;
+        if (!is_mixed(f(I)) || !is_open(state, I)) return;
+        if (level < mixed_cells && !is_surface(f, I)) return;
+        if (level == near_solids && !is_swept_beside(I)) return;
+        gives_(I) = f(I) * (1 - f(I));
+    });
+    const real available = sum_over(f.extent(), [&](const Index<D>& I) { return part_(I) * gives_(I); });
+    if (available == 0) return 0;
     const real factor = std::clamp(missing / available, -1.0, 1.0);
-    for_each_cell(f.extent(), [&](const Index<D>& I) { f(I) += factor * gives(I); });
-    corrected_[0] += factor * available, corrected_[1] += std::abs(factor * available);
+    for_each_cell(f.extent(), [&](const Index<D>& I) { f(I) += factor * gives_(I); });
+    return factor * available;
 }
 
 template <int D>
@@ -61,6 +116,46 @@ void VisibleLiquid<D>::restore(const Checkpoint& from) {
     target_ = all[0], corrected_ = {all[1], all[2]};
 }
 
+template <int D>
+void UncoveredFaces<D>::remember(const MacState<D>& state) {
+    for (std::size_t a = 0; a < D; ++a) {
+        const auto& open = state.solid.open[a];
+        if (was_closed_[a].empty()) was_closed_[a] = Grid<std::uint8_t, D>(open.extent());
+        for_each_cell(open.extent(), [&](const Index<D>& I) { was_closed_[a](I) = open(I) == 0; });
+    }
+}
+
+template <int D>
+void UncoveredFaces<D>::settle(MacState<D>& state, const Densities& rho, const FaceFractions<D>& fractions) {
+    for (int a = 0; a < D; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        const auto &open = state.solid.open[at], &velocity = state.solid.velocity[at];
+        for_each_free_face(state.u, state.sides, a, [&](const Index<D>& I) {
+            if (open(I) == 0 || !was_closed_[at](I)) return;
+            real mass = 0, momentum = 0;
+            for (int d = 0; d < D; ++d)
+                for (const int way : {-1, 1}) {
+                    Index<D> J = I;
+                    J[d] += way;
+                    if (!open.contains(J) || was_closed_[at](J) || open(J) < least_trusted_fraction) continue;
+                    const real of_face = open(J) * rho.of(fractions[at](J));
+                    mass += of_face, momentum += of_face * state.u[a](J);
+                }
+            state.u[a](I) = mass > 0 ? momentum / mass : velocity(I);
+        });
+    }
+    sync_periodic(state.u, state.sides);
+}
+
+template <int D>
+std::size_t UncoveredFaces<D>::bytes() const {
+    std::size_t total = 0;
+    for (const auto& closed : was_closed_) total += closed.bytes();
+    return total;
+}
+
+template class UncoveredFaces<2>;
+template class UncoveredFaces<3>;
 template class VisibleLiquid<2>;
 template class VisibleLiquid<3>;
 

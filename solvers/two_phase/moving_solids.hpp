@@ -5,9 +5,10 @@
 //     (V − dt ∇·(A u)) f' = V f − Σ F,      V ≥ 2 Σ|C|  where a small cell would be emptied (it then fills slower than it would)
 //
 // Placement knows V to second order, the sweep of a solid to first order. What a step has made of Σ V f is given back at the interface: a
-// correction of volume by mixed cells (Weymouth & Yue 2010 need none, as their V is constant).
+// correction of volume by mixed cells near the solid (Weymouth & Yue 2010 need none, as their V is constant).
 #pragma once
 #include "two_phase/solids.hpp"
+#include "two_phase/transport.hpp"
 
 namespace weir::two_phase {
 
@@ -25,7 +26,8 @@ public:
     const Padded<D>& room() const { return room_; }
     /// From now on the volume of these fractions is kept.
     void start(const Grid<real, D>& f) { target_ = volume(f); }
-    /// Bounds the fractions in solids, and moves those of mixed cells so that the liquid is what it was and `entered` more [cells].
+    /// Bounds the fractions in solids, and moves those of mixed cells so that the liquid is what it was and `entered` more [cells]: at the
+    /// surface beside moving solids; where there is none, at all of it; where no surface is resolved, in all mixed cells.
     void correct(const MacState<D>& state, real entered, Grid<real, D>& f);
     /// Liquid outside solids [cells].
     real volume(const Grid<real, D>& f) const;
@@ -34,14 +36,33 @@ public:
     real corrections() const { return corrected_[1]; }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
-    std::size_t bytes() const { return part_.bytes() + own_room_.bytes() + room_.bytes(); }
+    std::size_t bytes() const { return part_.bytes() + swept_.bytes() + gives_.bytes() + own_room_.bytes() + room_.bytes(); }
 
 private:
+    real give_back(const MacState<D>& state, int level, real missing, Grid<real, D>& f);
     Grid<real, D> part_;
+    bool is_swept_beside(const Index<D>& I) const;
+    Grid<std::uint8_t, D> swept_;  // whether the open part has changed
+    Grid<real, D> gives_;          // what a cell can give or take per unit of the factor
     Grid<real, D> own_room_;
     Padded<D> room_;  // with ghosts
     real target_ = 0;
     std::array<real, 2> corrected_{};
+};
+
+/// Faces that a solid leaves: what flows in there comes from beside them.
+template <int D>
+class UncoveredFaces {
+public:
+    /// Call it before solids are placed anew.
+    void remember(const MacState<D>& state);
+    /// Sets the velocity of faces that were closed and are open: the mean of the open faces beside them, by their masses, or that of the
+    /// solid. Its continuation into the solid (solids.hpp) may be a jet of gas, behind a thin solid even one of the other side.
+    void settle(MacState<D>& state, const Densities& rho, const FaceFractions<D>& fractions);
+    std::size_t bytes() const;
+
+private:
+    std::array<Grid<std::uint8_t, D>, D> was_closed_;
 };
 
 }  // namespace weir::two_phase

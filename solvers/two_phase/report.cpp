@@ -178,8 +178,8 @@ template <int D>
 std::size_t TwoPhase<D>::bytes() const {
     std::size_t total = state_.bytes() + transport_.bytes() + fraction_ghosts_.bytes() + curvature_.bytes() + projection_.bytes() +
                         effects_.bytes() + distance_.bytes() + solids_.bytes() + continued_.bytes() + visible_.bytes() +
-                        (bodies_ ? bodies_->bytes() : 0) + (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0) +
-                        (heat_ ? heat_->bytes() + sizeof(*heat_) : 0);
+                        uncovered_.bytes() + (bodies_ ? bodies_->bytes() : 0) +
+                        (viscosity_ ? viscosity_->bytes() + sizeof(*viscosity_) : 0) + (heat_ ? heat_->bytes() + sizeof(*heat_) : 0);
     for (const auto& fractions : faces_) total += fractions.bytes();
     for (const auto& component : open_flow_.face) total += component.bytes();
     return total;

@@ -17,8 +17,9 @@ template <int D>
 StepReport TwoPhase<D>::step(real dt) {
     whole_ = !own().distributed();
     ++ruled_[static_cast<std::size_t>(ruling_bound())];
-    transport(dt);                                      // ∂f/∂t + ∇·(f u) = 0,  ∂(ρu)/∂t + ∇·(ρ u u) = 0
-    find_face_densities();                              // ρ_a of the half cells beside each face
+    transport(dt);          // ∂f/∂t + ∇·(f u) = 0,  ∂(ρu)/∂t + ∇·(ρ u u) = 0
+    find_face_densities();  // ρ_a of the half cells beside each face
+    if (solids_.moving()) uncovered_.settle(state_, options_.rho, faces_);
     apply_viscosity(dt);                                // (ρ_a − dt ∇·2μD) u = ρ_a u
     effects_.apply(Stage::force, state_, dt, passes_);  // u += dt g
     apply_heat(dt);                                     // ∂(ρcT)/∂t = ∇·(k ∇T),  u −= dt Σ f_i ρ_i β_i (T − T_0) g / ρ_a
@@ -102,6 +103,7 @@ template <int D>
 void TwoPhase<D>::move_solids(real dt) {
     if (!solids_.moving()) return;
     const auto timed = passes_.time("solids");
+    uncovered_.remember(state_);
     if (bodies_) bodies_->advance_free(solids_, dt);
     solids_.place(state_, state_.time + dt);
     see_solids();
@@ -188,7 +190,7 @@ const poisson::Report& TwoPhase<D>::project(real dt, BodiesInFlow<D>* bodies) {
     return report;
 }
 
-/// Weymouth & Yue's measure of a step: the cells that leave a cell along all axes together.
+/// Weymouth & Yue's measure of a step: the cells that leave a cell along all axes together. Solids cross as many cells at most.
 template <int D>
 void TwoPhase<D>::find_rate() {
     rate_ = max_over(rows_of<D>(state_.extent()), [&](const Index<D>& row) {
@@ -201,6 +203,8 @@ void TwoPhase<D>::find_rate() {
         });
         return most;
     });
+    if (solids_.moving()) rate_ = larger_or_nan(rate_, solids_.max_rate(state_));
+    if (bodies_) rate_ = larger_or_nan(rate_, bodies_->bodies().max_rate(*std::min_element(state_.u.h.begin(), state_.u.h.end())));
 }
 
 /// The larger |u|/h of the two faces of each cell along axis a. NaN if either is.
@@ -218,10 +222,8 @@ void TwoPhase<D>::add_rate(int a, const Index<D>& first, int count, real* sum) c
     };
     const real* q = &u(first);
     if (!solids_.any()) return add([q](std::ptrdiff_t i) { return q[i]; });
-    const real *open = &state_.solid.open[static_cast<std::size_t>(a)](first),
-               *swept = &state_.solid.velocity[static_cast<std::size_t>(a)](first);
-    if (!solids_.moving()) return add([q, open](std::ptrdiff_t i) { return open[i] * q[i]; });
-    add([q, open, swept](std::ptrdiff_t i) { return open[i] * q[i] + (1 - open[i]) * swept[i]; });
+    const real* open = &state_.solid.open[static_cast<std::size_t>(a)](first);
+    add([q, open](std::ptrdiff_t i) { return open[i] * q[i]; });
 }
 
 template <int D>

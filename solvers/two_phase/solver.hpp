@@ -142,6 +142,7 @@ private:
     PaddedVelocity<D> open_flow_;      // empty without solids
     ContinuedFractions<D> continued_;  // likewise
     VisibleLiquid<D> visible_;         // empty without moving solids
+    UncoveredFaces<D> uncovered_;      // likewise
     Padded<D> fraction_ghosts_;
     FaceFractions<D> faces_;
     Curvature<D> curvature_;                   // empty without tension

@@ -143,7 +143,7 @@ TEST_IN_2D_AND_3D("a light box comes to rest below the lid of a closed tank, and
             const std::string box = "{ shape = \"box\", min = " + list({lo, std::to_string(low), lo}, D) +
                                     ", max = " + list({hi, std::to_string(low + 0.25), hi}, D) + ", density = " + density + " }";
             TwoPhase<D> solver(two_phase_scene(tank<D>(box, density == std::string("0.5") ? "0.2" : "0.97")));
-            while (solver.time() < 0.5) solver.step(std::min(solver.advised_dt(), 0.02));
+            while (solver.time() < 0.7) solver.step(std::min(solver.advised_dt(), 0.02));
             EXPECT_NEAR(body_height(solver), rest, 0.01 / 32) << density << ' ' << shift;
             EXPECT_NEAR(body_velocity(solver)[1], 0, 0.01) << density << ' ' << shift;
         }

@@ -77,7 +77,6 @@ TEST_IN_2D_AND_3D(
         const real volume = integral(solver, "volume");
         run_until(solver, D == 2 ? 0.4 : 0.1);
         EXPECT_NEAR(integral(solver, "volume"), volume, 1e-14);
-        std::printf("corrections %g\n", integral(solver, "volume_corrections"));
         const real skin = (D == 2 ? 2 * pi * 0.15 : 4 * pi * 0.15 * 0.15) / 24;
         EXPECT_LT(integral(solver, "volume_corrections"), skin);
     }
