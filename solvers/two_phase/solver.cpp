@@ -28,6 +28,7 @@ StepReport TwoPhase<D>::step(real dt) {
         mac::explained_by_room(state_, solids_, [&] { return project(dt, bodies_.get()); });  // u −= dt ∇p / ρ_a,  ∇·u = 0
     const real divergence = max_divergence(state_);
     mac::require_room(state_, solids_, divergence);
+    if (bodies_) mac::require_room_of_bodies(state_, solids_, divergence, dt, bodies_->flux_in_films());
     find_rate();
     check();
     ++steps_;

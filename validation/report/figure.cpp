@@ -115,6 +115,14 @@ Curve shown(Curve series, const std::string& metric) {
     return series;
 }
 
+/// Returns whether all curves are round-off about zero: the number in the table says more.
+bool is_noise(const Panel& panel) {
+    constexpr real round_off = 1e-12;
+    return std::all_of(panel.curves.begin(), panel.curves.end(), [](const Curve& c) {
+        return std::all_of(c.y.begin(), c.y.end(), [](real y) { return std::abs(y) < round_off; });
+    });
+}
+
 void add_histories(std::vector<Panel>& panels, const CaseResult& result) {
     std::set<std::string> drawn;
     for (const std::string& metric : metrics_of(result)) {
@@ -129,6 +137,7 @@ void add_histories(std::vector<Panel>& panels, const CaseResult& result) {
             c.label = label_of(v, "weir") + (v.runs.back().label.empty() ? "" : " " + v.runs.back().label);
             panel.curves.push_back(std::move(c));
         }
+        if (metric.ends_with(".drift") && is_noise(panel)) continue;
         if (!panel.curves.empty() && drawn.insert(panel.title).second) panels.push_back(std::move(panel));
     }
 }

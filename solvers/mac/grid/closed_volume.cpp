@@ -161,10 +161,21 @@ void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real di
         "volume", fmt::format("solids[{}] moves so that {}: an incompressible fluid has no outflow", region.solid, text_of(region)));
 }
 
-#define WEIR_INSTANTIATE(D)                                                             \
-    template Squeezed<D> find_squeezed(const MacState<D>&, const geometry::Solids<D>&); \
-    template std::string text_of(const Squeezed<D>&);                                   \
-    template bool move_as_prescribed(const geometry::Solids<D>&);                       \
+template <int D>
+void require_room_of_bodies(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence, real dt, real in_films) {
+    constexpr real part = 1e-3;
+    if (!(divergence * dt > part)) return;
+    const Squeezed<D> region = find_squeezed(s, solids.solids());
+    if (!region.any() || !((std::abs(region.growth) - in_films) * dt > part * region.volume)) return;
+    throw NumericalFailure(
+        "volume", fmt::format("bodies move so that {}: an incompressible fluid that they close off does not let them", text_of(region)));
+}
+
+#define WEIR_INSTANTIATE(D)                                                                               \
+    template Squeezed<D> find_squeezed(const MacState<D>&, const geometry::Solids<D>&);                   \
+    template std::string text_of(const Squeezed<D>&);                                                     \
+    template bool move_as_prescribed(const geometry::Solids<D>&);                                         \
+    template void require_room_of_bodies(const MacState<D>&, const SolidPlacement<D>&, real, real, real); \
     template void require_room(const MacState<D>&, const SolidPlacement<D>&, real);
 WEIR_INSTANTIATE(2)
 WEIR_INSTANTIATE(3)

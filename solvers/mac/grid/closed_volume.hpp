@@ -29,13 +29,18 @@ Squeezed<D> find_squeezed(const MacState<D>& s, const geometry::Solids<D>& solid
 template <int D>
 std::string text_of(const Squeezed<D>& region);
 
-/// Returns whether any solid has a prescribed motion; free bodies adapt theirs.
+/// Returns whether any solid has a prescribed motion.
 template <int D>
 bool move_as_prescribed(const geometry::Solids<D>& solids);
 
 /// Throws NumericalFailure where there is such a region and a step has left a `divergence` [1/s] that it may have caused.
 template <int D>
 void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence);
+
+/// Throws NumericalFailure where free bodies close off a region and a step dt changes its volume by more than a thousandth: the pressure of
+/// such a region is known up to a constant, and does not hold them. `in_films`: what they drive through films of sealed cells [m^D/s].
+template <int D>
+void require_room_of_bodies(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence, real dt, real in_films);
 
 /// Returns f(); where it fails because of such a region, the failure says so.
 template <int D, class F>
