@@ -15,7 +15,7 @@ using json = nlohmann::ordered_json;
 std::string with_unit(real value, const std::string& unit) { return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit); }
 
 /// "-9.4%"; of round-off "0%".
-std::string signed_percent(real part) { return std::abs(part) < 5e-7 ? "0%" : fmt::format("{:+.2g}%", 100 * part); }
+std::string signed_percent(real part) { return std::abs(part) < 5e-7 ? "0%" : (part > 0 ? "+" : "") + sim::percent_text(part); }
 
 std::string line(const std::string& name, const std::string& text) { return fmt::format("  {:<14}{}\n", name, text); }
 

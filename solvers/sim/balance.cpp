@@ -108,8 +108,6 @@ std::optional<Balanced> heat(const scene::Scene& scene, const std::vector<Integr
     return b;
 }
 
-std::string percent(real part) { return fmt::format("{:.2g}%", 100 * std::abs(part)); }
-
 std::string what_helps(const scene::Scene& scene) {
     if (scene.solver() == "mac_water" || scene.solver() == "tallcell")
         return scene.effect("volume_control") ? "refine the grid" : "refine the grid, or add effects.volume_control";
@@ -121,11 +119,11 @@ void warn_of_quantity(const scene::Scene& scene, const Balanced& b, std::vector<
     const std::string name = b.name == "heat" ? "the fluid's heat" : "the liquid's " + b.name;
     const std::string from_to = fmt::format("{:.4g} {} to {:.4g} {}", b.start, b.unit, b.end, b.unit);
     const bool exchanged = std::abs(*b.inflow) > 1e-9 * b.scale;
-    const std::string text = exchanged
-                                 ? fmt::format("{} is {} {} the value expected from inflow and outflow ({}, net inflow {:.4g} {})", name,
-                                               percent(*b.unexplained), *b.unexplained < 0 ? "below" : "above", from_to, *b.inflow, b.unit)
-                                 : fmt::format("{} {} by {} without an {} ({})", name, *b.unexplained < 0 ? "fell" : "rose",
-                                               percent(*b.unexplained), *b.unexplained < 0 ? "outlet" : "inlet", from_to);
+    const std::string text =
+        exchanged ? fmt::format("{} is {} {} the value expected from inflow and outflow ({}, net inflow {:.4g} {})", name,
+                                percent_text(std::abs(*b.unexplained)), *b.unexplained < 0 ? "below" : "above", from_to, *b.inflow, b.unit)
+                  : fmt::format("{} {} by {} without an {} ({})", name, *b.unexplained < 0 ? "fell" : "rose",
+                                percent_text(std::abs(*b.unexplained)), *b.unexplained < 0 ? "outlet" : "inlet", from_to);
     warnings.push_back(text + "; " + what_helps(scene));
 }
 
@@ -134,7 +132,7 @@ void warn_of_energy(const Balanced& b, std::vector<std::string>& warnings) {
     warnings.push_back(
         fmt::format("the total energy rose by {} above its initial value, although nothing does work on the fluid ({:.4g} {} to {:.4g} "
                     "{}); refine the grid, or shorten the steps (time.cfl)",
-                    percent(*b.unexplained), b.start, b.unit, *b.highest, b.unit));
+                    percent_text(std::abs(*b.unexplained)), b.start, b.unit, *b.highest, b.unit));
 }
 
 /// What keeps the volume beside moving solids is taken from the whole surface, that of trapped gas too.
@@ -145,7 +143,7 @@ void warn_of_corrections(const std::vector<Integral>& corrected, const std::vect
     warnings.push_back(
         fmt::format("{} of the liquid was moved along its whole surface to keep the volume beside moving solids ({:.4g} {}): "
                     "trapped gas may have changed by a part of that; refine the grid",
-                    percent(moved->value / volume), moved->value, moved->unit));
+                    percent_text(moved->value / volume), moved->value, moved->unit));
 }
 
 /// Pockets of enclosed air.
@@ -210,6 +208,15 @@ bool energy_cannot_grow(const scene::Scene& scene) {
     if (!scene.has("effects")) return true;
     const auto effects = scene.root().table("effects").keys();
     return std::all_of(effects.begin(), effects.end(), is_harmless);
+}
+
+std::string percent_text(real part) {
+    const real value = 100 * part, size = std::abs(value);
+    if (!(size > 0) || !(size < 10)) return fmt::format("{:.0f}%", value);
+    std::string text = fmt::format("{:.{}f}", value, static_cast<int>(std::ceil(1 - std::log10(size))));
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text + '%';
 }
 
 std::vector<std::pair<std::string, real>> thin_solids(const scene::Scene& scene, const GridView& grid) {

@@ -60,6 +60,9 @@ bool energy_cannot_grow(const scene::Scene& scene);
 /// Returns whether there is no inflow or outflow: no emitters or sinks, no open sides, no brush, no rain.
 bool is_closed(const scene::Scene& scene);
 
+/// A part as a percentage with at least two significant digits and without exponent: "0.052%", "9.4%", "123%", "90000%".
+std::string percent_text(real part);
+
 /// Boxes, balls, capsules and cylinders among the solids that are thinner than two cells, by key, and their thickness in cells.
 std::vector<std::pair<std::string, real>> thin_solids(const scene::Scene& scene, const GridView& grid);
 

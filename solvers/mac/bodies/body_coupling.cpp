@@ -1,6 +1,7 @@
 // Coupling of bodies and pressure in a step: bodies in the pressure matrix where their added mass allows it, otherwise partitioned
 // iterations (bodies_in_flow.hpp).
 #include "mac/bodies/bodies_in_flow.hpp"
+#include "rigid/inside.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -290,7 +291,7 @@ bool BodiesInFlow<D>::fluid_decides(const geometry::Solids<D>& solids, real dt) 
     return contacts_.empty();
 }
 
-/// Stores the converged velocities in the bodies.
+/// Stores the converged velocities in the bodies. Throws NumericalFailure where a body is beyond a wall.
 template <int D>
 void BodiesInFlow<D>::take_velocities(MacState<D>& s, SolidPlacement<D>& placement, real dt) {
     velocity_ = next_;
@@ -308,6 +309,7 @@ void BodiesInFlow<D>::take_velocities(MacState<D>& s, SolidPlacement<D>& placeme
     }
     if (brush_forcing_) record_brush_impulse();
     bodies_.place(placement.solids());
+    rigid::require_inside(bodies_.all(), bodies_.surroundings(placement.solids()));
     set_velocities(s);
 }
 

@@ -1,4 +1,5 @@
 #include "particles/boundaries/bodies_in_liquid.hpp"
+#include "rigid/inside.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -247,6 +248,7 @@ void BodiesInLiquid<D>::end(Domain<D>& domain, real dt, real slow) {
         }
     }
     bodies_->place(domain.solids);
+    rigid::require_inside(bodies_->all(), bodies_->surroundings(domain.solids));
     last_dt_ = dt;
 }
 

@@ -134,4 +134,26 @@ TEST("a solid thinner than a cell is named before the run, with its thickness an
     EXPECT_NE(said[0].find("grid.cells = [84, 84]"), std::string::npos);  // 20 cells times 2/0.48, upwards
 }
 
+// 2 cells: the bound of remarks on bodies. The plate of 0.8 cells is 0.04 m; turned by 30 degrees it is as thick.
+TEST("a body thinner than two cells is named before the run, with its thickness and the cells that it needs, in 2D and 3D") {
+    const auto remarks = [](int dim, const std::string& list) {
+        return mac::remarks_on_thin_solids(test::mac_scene(test::unit_box(dim, 20, "bodies = [ " + list + " ]\n")));
+    };
+    const std::string thick = "{ shape = \"box\", min = [0.2, 0.2], max = [0.6, 0.3], density = 500.0 }",
+                      plate = "{ shape = \"box\", min = [0.213, 0.417], max = [0.613, 0.457], density = 500.0, name = \"plate\" }",
+                      turned = "{ shape = \"cylinder\", from = [0.3, 0.6], to = [0.6464, 0.8], radius = 0.02, density = 500.0 }";
+    EXPECT_TRUE(remarks(2, thick).empty());
+    const auto said = remarks(2, thick + ", " + plate + ", " + turned);
+    ASSERT_EQ(said.size(), 2u);
+    EXPECT_EQ(said[0].find("bodies[1] (\"plate\") is 0.8 cells thick at most: "), 0u) << said[0];
+    EXPECT_NE(said[0].find("grid.cells = [50, 50]"), std::string::npos) << said[0];  // 20 cells times 2/0.8
+    EXPECT_EQ(said[1].find("bodies[2] is 0.8 cells thick at most: "), 0u) << said[1];
+    const std::string ball = "{{ shape = \"sphere\", centre = [0.5, 0.5, 0.5], radius = {}, density = 500.0 }}";
+    EXPECT_TRUE(remarks(3, fmt::format(fmt::runtime(ball), 0.05)).empty());  // two cells
+    const auto small = remarks(3, fmt::format(fmt::runtime(ball), 0.04));
+    ASSERT_EQ(small.size(), 1u);
+    EXPECT_EQ(small[0].find("bodies[0] is 1.6 cells thick at most: "), 0u) << small[0];
+    EXPECT_NE(small[0].find("grid.cells = [25, 25, 25]"), std::string::npos) << small[0];
+}
+
 }  // namespace weir::smoke::walls_tests

@@ -148,6 +148,27 @@ TEST("a volume that is kept by corrections beside moving solids says how much th
     EXPECT_TRUE(little.warnings.empty());
 }
 
+TEST("percentages of any size have no exponent: all of a volume that vanished, and 900 times it moved by corrections") {
+    const BalanceOfRun vanished = balance(volume(0.143, 0.0004, 0.143, 0.143));
+    ASSERT_EQ(vanished.warnings.size(), 1u);
+    EXPECT_EQ(vanished.warnings[0].find("the liquid's volume fell by 100% without an outlet"), 0u) << vanished.warnings[0];
+    const BalanceOfRun moved = balance([](real t) -> std::vector<Integral> {
+        return {{"volume", "m^2", 0.5}, {"volume_corrections", "m^2", 450 * t}};
+    });
+    ASSERT_EQ(moved.warnings.size(), 1u);
+    EXPECT_EQ(moved.warnings[0].find("90000% of the liquid was moved"), 0u) << moved.warnings[0];
+    for (const auto& [part, text] : {std::pair{0.0, "0%"},
+                                     {5.23e-7, "0.000052%"},
+                                     {0.00052, "0.052%"},
+                                     {-0.094, "-9.4%"},
+                                     {0.0996, "10%"},
+                                     {0.125, "12%"},
+                                     {0.996, "100%"},
+                                     {1.234, "123%"},
+                                     {-900.0, "-90000%"}})
+        EXPECT_EQ(weir::sim::percent_text(part), text);
+}
+
 TEST("heat is balanced against what was added to it") {
     const auto heat = [](real lost) {
         return [lost](real t) { return std::vector<Integral>{{"heat", "J/m", 100 + (50 - lost) * t}, {"heat_added", "J/m", 50 * t}}; };
