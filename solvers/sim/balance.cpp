@@ -141,7 +141,7 @@ void warn_of_corrections(const std::vector<Integral>& corrected, const std::vect
     const real volume = value_or_zero(end, "volume");
     if (!moved || !(moved->value > tolerated * volume)) return;
     warnings.push_back(
-        fmt::format("{} of the liquid was moved along its whole surface to keep the volume beside moving solids ({:.4g} {}): "
+        fmt::format("{} of the liquid was moved along its surface to keep the volume beside moving solids ({:.4g} {}): "
                     "trapped gas may have changed by a part of that; refine the grid",
                     percent_text(moved->value / volume), moved->value, moved->unit));
 }

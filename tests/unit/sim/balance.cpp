@@ -144,7 +144,7 @@ TEST("a volume that is kept by corrections beside moving solids says how much th
     EXPECT_EQ(much.corrected[0].name, "volume_corrections");
     EXPECT_NEAR(much.corrected[0].value, 0.01, 1e-12);
     ASSERT_EQ(much.warnings.size(), 1);
-    EXPECT_EQ(much.warnings[0].find("2% of the liquid was moved along its whole surface"), 0) << much.warnings[0];
+    EXPECT_EQ(much.warnings[0].find("2% of the liquid was moved along its surface"), 0) << much.warnings[0];
     EXPECT_TRUE(little.warnings.empty());
 }
 
