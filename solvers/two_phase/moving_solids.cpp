@@ -35,6 +35,30 @@ void VisibleLiquid<D>::find_room(const MacState<D>& state, const PaddedVelocity<
 }
 
 template <int D>
+void VisibleLiquid<D>::start(const geometry::Shape<D>& liquid, const SolidPlacement<D>& solids, const MacState<D>& state,
+                             Grid<real, D>& f) {
+    constexpr int samples = D == 2 ? 8 : 4;  // along each axis
+    constexpr real of_samples = 1.0 / samples;
+    for_each_cell(f.extent(), [&](const Index<D>& I) {
+        if (part_(I) == 0 || part_(I) == 1 || !is_mixed(f(I)) || !is_open(state, I)) return;
+        int inside = 0, wet = 0;
+        const Vec<D> corner = state.u.cell_centre(I) - 0.5 * state.u.h;
+        for (int code = 0; code < (D == 2 ? samples * samples : samples * samples * samples); ++code) {
+            Vec<D> x = corner;
+            for (int a = 0, rest = code; a < D; ++a, rest /= samples) x[a] += state.u.h[a] * of_samples * (rest % samples + 0.5);
+            if (solids.solids().distance(x) >= 0) continue;
+            ++inside;
+            if (liquid.distance(x) < 0) ++wet;
+        }
+        if (wet == 0)
+            f(I) = std::min(1.0, f(I) / part_(I));
+        else if (wet == inside && f(I) < 1 - part_(I) + of_samples * part_(I))
+            f(I) = 0;
+    });
+    target_ = volume(f);
+}
+
+template <int D>
 real VisibleLiquid<D>::volume(const Grid<real, D>& f) const {
     return sum_over(f.extent(), [&](const Index<D>& I) { return part_(I) * f(I); });
 }

@@ -24,8 +24,9 @@ public:
     /// Volumes of cells outside solids at the start of a step [cells], but at least twice what may leave them in it: a small cell fills and
     /// empties slower than it would.
     const Padded<D>& room() const { return room_; }
-    /// From now on the volume of these fractions is kept.
-    void start(const Grid<real, D>& f) { target_ = volume(f); }
+    /// Makes f of cut cells that of their open part where a shape of liquid ends at the solid, or lies in it alone. From now on the volume
+    /// of these fractions is kept.
+    void start(const geometry::Shape<D>& liquid, const SolidPlacement<D>& solids, const MacState<D>& state, Grid<real, D>& f);
     /// Bounds the fractions in solids, and moves those of mixed cells so that the liquid is what it was and `entered` more [cells]: at the
     /// surface beside moving solids; where there is none, at all of it; where no surface is resolved, in all mixed cells.
     void correct(const MacState<D>& state, real entered, Grid<real, D>& f);

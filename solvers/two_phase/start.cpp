@@ -175,7 +175,7 @@ void TwoPhase<D>::start_liquid(const scene::Scene& scene) {
     start_fractions<D>(*liquid, state_.u, state_.fields[0].values);
     if (sum_over(state_.extent(), [&](const Index<D>& I) { return is_open(state_, I) ? fraction()(I) : 0; }) == 0)
         scene.refuse("liquid", "there is no liquid in the domain");
-    if (solids_.moving()) visible_.start(fraction());
+    if (solids_.moving()) visible_.start(*liquid, solids_, state_, state_.fields[0].values);
     find_face_densities();
 }
 
