@@ -9,11 +9,12 @@ namespace weir::two_phase {
 
 template <int D>
 void VisibleLiquid<D>::see_solids(const SolidPlacement<D>& solids, const MacState<D>& state) {
+    constexpr real round_off = 1e-9;
     const bool first = part_.empty();
     if (first) part_ = Grid<real, D>(state.extent()), swept_ = Grid<std::uint8_t, D>(state.extent());
     for_each_cell(state.extent(), [&](const Index<D>& I) {
         const real part = free_surface::open_part_of_cell(solids, I);
-        swept_(I) = !first && part != part_(I);
+        swept_(I) = !first && std::abs(part - part_(I)) > round_off;
         part_(I) = part;
     });
 }
