@@ -1,7 +1,6 @@
 #include "rigid/inside.hpp"
 
 #include "core/error.hpp"
-#include "scene/names.hpp"
 
 #include <fmt/format.h>
 
@@ -35,7 +34,7 @@ template <int D>
 [[noreturn]] void refuse(const Body<D>& body, std::size_t number, const Vec<D>& centre, const Wall& wall) {
     std::string at;
     for (int a = 0; a < D; ++a) at += fmt::format("{}{:.4g}", a ? ", " : "", centre[a]);
-    const std::string name = body.name == std::to_string(number) ? "" : " (" + scene::quote(body.name) + ")";
+    const std::string name = body.name == std::to_string(number) ? "" : fmt::format(" (\"{}\")", body.name);
     const char axis = "xyz"[wall.axis];
     throw NumericalFailure("position", fmt::format("bodies[{}]{} is jammed: its centre, [{}] m, is beyond the wall {}_{} at {} = {:.6g} m; "
                                                    "a solid, a body or a joint pushes it against the wall",

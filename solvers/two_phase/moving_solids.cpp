@@ -150,6 +150,9 @@ void UncoveredFaces<D>::remember(const MacState<D>& state) {
     }
 }
 
+/// Of densities: what is lighter than this part of a face's has nothing to say of its velocity.
+static constexpr real similar = 0.1;
+
 template <int D>
 void UncoveredFaces<D>::settle(MacState<D>& state, const Densities& rho, const FaceFractions<D>& fractions) {
     for (int a = 0; a < D; ++a) {
@@ -157,16 +160,17 @@ void UncoveredFaces<D>::settle(MacState<D>& state, const Densities& rho, const F
         const auto &open = state.solid.open[at], &velocity = state.solid.velocity[at];
         for_each_free_face(state.u, state.sides, a, [&](const Index<D>& I) {
             if (open(I) == 0 || !was_closed_[at](I)) return;
-            real mass = 0, momentum = 0;
+            const real density = rho.of(fractions[at](I));
+            real least = velocity(I), most = least;
             for (int d = 0; d < D; ++d)
                 for (const int way : {-1, 1}) {
                     Index<D> J = I;
                     J[d] += way;
                     if (!open.contains(J) || was_closed_[at](J) || open(J) < least_trusted_fraction) continue;
-                    const real of_face = open(J) * rho.of(fractions[at](J));
-                    mass += of_face, momentum += of_face * state.u[a](J);
+                    if (rho.of(fractions[at](J)) < similar * density) continue;
+                    least = std::min(least, state.u[a](J)), most = std::max(most, state.u[a](J));
                 }
-            state.u[a](I) = mass > 0 ? momentum / mass : velocity(I);
+            state.u[a](I) = std::clamp(state.u[a](I), least, most);
         });
     }
     sync_periodic(state.u, state.sides);

@@ -57,8 +57,8 @@ class UncoveredFaces {
 public:
     /// Call it before solids are placed anew.
     void remember(const MacState<D>& state);
-    /// Sets the velocity of faces that were closed and are open: the mean of the open faces beside them, by their masses, or that of the
-    /// solid. Its continuation into the solid (solids.hpp) may be a jet of gas, behind a thin solid even one of the other side.
+    /// Bounds the velocity of faces that were closed and are open by those of the solid and of the open faces beside them that are as
+    /// dense. Its continuation into the solid (solids.hpp) may be a jet of gas, behind a thin solid even one of the other side.
     void settle(MacState<D>& state, const Densities& rho, const FaceFractions<D>& fractions);
     std::size_t bytes() const;
 

@@ -19,7 +19,7 @@ StepReport TwoPhase<D>::step(real dt) {
     ++ruled_[static_cast<std::size_t>(ruling_bound())];
     transport(dt);          // ∂f/∂t + ∇·(f u) = 0,  ∂(ρu)/∂t + ∇·(ρ u u) = 0
     find_face_densities();  // ρ_a of the half cells beside each face
-    if (solids_.moving()) uncovered_.settle(state_, options_.rho, faces_);
+    if (mac::move_as_prescribed(solids_.solids())) uncovered_.settle(state_, options_.rho, faces_);
     apply_viscosity(dt);                                // (ρ_a − dt ∇·2μD) u = ρ_a u
     effects_.apply(Stage::force, state_, dt, passes_);  // u += dt g
     apply_heat(dt);                                     // ∂(ρcT)/∂t = ∇·(k ∇T),  u −= dt Σ f_i ρ_i β_i (T − T_0) g / ρ_a
@@ -104,7 +104,7 @@ template <int D>
 void TwoPhase<D>::move_solids(real dt) {
     if (!solids_.moving()) return;
     const auto timed = passes_.time("solids");
-    uncovered_.remember(state_);
+    if (mac::move_as_prescribed(solids_.solids())) uncovered_.remember(state_);
     if (bodies_) bodies_->advance_free(solids_, dt);
     solids_.place(state_, state_.time + dt);
     see_solids();

@@ -147,8 +147,8 @@ TEST("the liquid of a cup stands still while a ball plunges beside it") {
     EXPECT_NEAR(pool(), before, 0.2 * 0.1 / n);
 }
 
-// Behind a thin solid the continued velocity may be that of a jet on its other side. In gas of 1 kg/m³ beside liquid of 1000, the mean by
-// mass is that of the liquid to a thousandth of the difference.
+// Behind a thin solid the continued velocity may be that of a jet on its other side. Liquid at 1 m/s, or the solid at 0 to 1 m/s, bounds
+// it; gas beside it does not.
 TEST_IN_2D_AND_3D("a face that a solid uncovers has the velocity of the liquid beside it, not what stood in the solid") {
     const auto scene = two_phase_scene(tank<D>(ball<D>({"0.413", "0.5", "0.36"}, constant<D>({"1.0", "0.0", "0.0"}))));
     mac::MacState<D> state(scene, FieldPlan{});
