@@ -118,9 +118,8 @@ Curve shown(Curve series, const std::string& metric) {
 /// Returns whether all curves are round-off about zero: the number in the table says more.
 bool is_noise(const Panel& panel) {
     constexpr real round_off = 1e-12;
-    return std::all_of(panel.curves.begin(), panel.curves.end(), [](const Curve& c) {
-        return std::all_of(c.y.begin(), c.y.end(), [](real y) { return std::abs(y) < round_off; });
-    });
+    return std::all_of(panel.curves.begin(), panel.curves.end(),
+                       [](const Curve& c) { return std::all_of(c.y.begin(), c.y.end(), [](real y) { return std::abs(y) < round_off; }); });
 }
 
 void add_histories(std::vector<Panel>& panels, const CaseResult& result) {
