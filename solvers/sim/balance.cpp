@@ -135,7 +135,7 @@ void warn_of_energy(const Balanced& b, std::vector<std::string>& warnings) {
                     percent_text(std::abs(*b.unexplained)), b.start, b.unit, *b.highest, b.unit));
 }
 
-/// What keeps the volume beside moving solids is taken from the whole surface, that of trapped gas too.
+/// What keeps the volume beside moving solids is taken from the surface there, that of trapped gas too.
 void warn_of_corrections(const std::vector<Integral>& corrected, const std::vector<Integral>& end, std::vector<std::string>& warnings) {
     const Integral* moved = find(corrected, "volume_corrections");
     const real volume = value_or_zero(end, "volume");

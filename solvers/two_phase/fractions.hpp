@@ -100,8 +100,7 @@ struct CarriedByDust {
     std::array<Grid<real, D>, 2>& values;
 };
 /// Moves dust; the sum is unchanged. Each cell gathers what its neighbours give, in the order of their indices. `f`: the fractions before,
-/// in the grid and with two layers of ghosts. Solid
-/// cells give and take nothing.
+/// in the grid and with two layers of ghosts. Solid cells give and take nothing.
 template <int D>
 void hand_on_dust(const Padded<D>& before, const Around<D>& around, const Grid<poisson::Cell, D>& cells, Grid<real, D>& f,
                   const CarriedByDust<D>* carried = nullptr);

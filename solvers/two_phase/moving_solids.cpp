@@ -21,18 +21,18 @@ void VisibleLiquid<D>::see_solids(const SolidPlacement<D>& solids, const MacStat
 
 template <int D>
 void VisibleLiquid<D>::find_room(const MacState<D>& state, const PaddedVelocity<D>& flow, real dt, const FractionGhosts<D>& ghosts) {
-    if (room_.empty()) room_ = Padded<D>(state.extent()), own_room_ = Grid<real, D>(state.extent());
-    for_each_cell(own_room_.extent(), [&](const Index<D>& I) {
-        own_room_(I) = 1;
+    if (room_.empty()) room_ = Padded<D>(state.extent());
+    for_each_cell(room_.extent(), [&](const Index<D>& I) {
+        room_(I) = 1;
         if (part_(I) == 1 || !is_open(state, I)) return;
         real leaving = 0, out = 0;
         for (int a = 0; a < D; ++a) {
             const real ratio = dt / state.u.h[a], lower = ratio * flow[a](I), upper = ratio * flow[a](I + e<D>(a));
             leaving += std::max(std::abs(lower), std::abs(upper)), out += upper - lower;
         }
-        own_room_(I) = std::max(part_(I), std::min(1.0, 2 * leaving + std::max(out, 0.0)));
+        room_(I) = std::max(part_(I), std::min(1.0, 2 * leaving + std::max(out, 0.0)));
     });
-    ghosts.fill_all(room_, own_room_);
+    ghosts.fill_outer(room_);
 }
 
 template <int D>
@@ -149,9 +149,6 @@ void UncoveredFaces<D>::remember(const MacState<D>& state) {
         for_each_cell(open.extent(), [&](const Index<D>& I) { was_closed_[a](I) = open(I) == 0; });
     }
 }
-
-/// Of densities: what is lighter than this part of a face's has nothing to say of its velocity.
-static constexpr real similar = 0.1;
 
 template <int D>
 void UncoveredFaces<D>::settle(MacState<D>& state, const Densities& rho, const FaceFractions<D>& fractions) {

@@ -37,7 +37,7 @@ public:
     real corrections() const { return corrected_[1]; }
     void save(Checkpoint& to) const;
     void restore(const Checkpoint& from);
-    std::size_t bytes() const { return part_.bytes() + swept_.bytes() + gives_.bytes() + own_room_.bytes() + room_.bytes(); }
+    std::size_t bytes() const { return part_.bytes() + swept_.bytes() + gives_.bytes() + room_.bytes(); }
 
 private:
     real give_back(const MacState<D>& state, int level, real missing, Grid<real, D>& f);
@@ -45,8 +45,7 @@ private:
     bool is_swept_beside(const Index<D>& I) const;
     Grid<std::uint8_t, D> swept_;  // whether the open part has changed
     Grid<real, D> gives_;          // what a cell can give or take per unit of the factor
-    Grid<real, D> own_room_;
-    Padded<D> room_;  // with ghosts
+    Padded<D> room_;               // with ghosts
     real target_ = 0;
     std::array<real, 2> corrected_{};
 };

@@ -32,9 +32,6 @@ Transport<D>::Transport(const MacState<D>& state, const EnteringFractions<D>& en
 
 namespace {
 
-/// Beyond this ratio between the densities of neighbouring volumes, slopes across them are not used: a gas volume beside a liquid one would
-/// receive a value extrapolated from the other phase.
-constexpr real similar = 0.1;
 /// Of the parts of volumes that one fluid fills: slopes of what it carries are used inside it. A mixed cell may lose nearly all of one
 /// fluid in a step, and a slope would take more than it has.
 constexpr real alike = 0.99;

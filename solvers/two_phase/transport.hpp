@@ -12,6 +12,10 @@
 
 namespace weir::two_phase {
 
+/// Beyond this ratio between the densities of neighbouring volumes, the velocity of the lighter one says nothing of that of the heavier
+/// one: it may belong to the other phase.
+inline constexpr real similar = 0.1;
+
 /// The axes of the sweeps of a step: every order in turn.
 template <int D>
 std::array<int, D> sweep_order(std::int64_t step);
@@ -46,8 +50,7 @@ public:
     /// `entering`: through inflows; `returning`: through open sides where the flow is inwards.
     Transport(const MacState<D>& state, const EnteringFractions<D>& entering, const EnteringFractions<D>& returning);
     /// Advects the fractions of cells. Returns the liquid that came in through open sides and inflows, less what left [cells]. `padded`: f
-    /// with its ghosts; it is changed.
-    /// `carried`: what the fluids carry in the same fluxes, each its own; nullptr: nothing.
+    /// with its ghosts; it is changed. `carried`: what the fluids carry in the same fluxes, each its own; nullptr: nothing.
     real advect_fraction(const Motion<D>& motion, Padded<D>& padded, Grid<real, D>& f, PhaseValues<D>* carried = nullptr);
     /// Advects component a of the velocity with the mass in the control volumes of its faces. `fractions`: of these at the start;
     /// `carried`: the conditions of the component at the sides; `to`: the new component.

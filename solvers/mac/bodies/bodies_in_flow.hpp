@@ -65,7 +65,7 @@ public:
     /// distance to the liquid's surface, at least `cap` where it is not known.
     real time_to_land(const MacState<D>& s, const Grid<real, D>& phi, real cap, real speed, real dt) const;
 
-    /// What bodies and solids drive through films of sealed cells [m^D/s].
+    /// What bodies and solids drive through films (sealed_films.cpp) [m^D/s].
     real flux_in_films() const;
     const Vec<D>& gravity() const { return gravity_; }
     /// Pressure solves of the last step, for tests and studies.
@@ -85,10 +85,10 @@ private:
     /// A cell that a body cuts.
     struct Cut {
         std::size_t cell;
-        rigid::Twist<D> out;       // ΔV D_k: volume flux out of the cell per unit of each velocity [m^D/s per m/s or rad/s]
-        rigid::Twist<D> passed{};  // the part of `out` that comes from sealed cells
-        real told = 0;             // what other solids drive out of sealed cells into this one [m^D/s]
-        real below = 0;            // g · (wall − cell centre); deep: g · (wall − centre of mass) [m²/s²]
+        rigid::Twist<D> out;             // ΔV D_k: volume flux out of the cell per unit of each velocity [m^D/s per m/s or rad/s]
+        rigid::Twist<D> out_of_films{};  // the part of `out` that films between the body and others drive in (sealed_films.cpp)
+        real out_by_solids = 0;          // what solids drive out of films [m^D/s]
+        real below = 0;                  // g · (wall − cell centre); deep: g · (wall − centre of mass) [m²/s²]
         real deep = 0;
     };
     real density(const MacState<D>& s, std::size_t cell) const { return density_of_cell_ ? density_of_cell_(cell) : s.rho; }
@@ -102,9 +102,9 @@ private:
         rigid::Twist<D> out;
     };
     bool is_sealed(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t own, const Index<D>& I) const;
-    void pass_on_sealed(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t body);
-    real told_out(const MacState<D>& s, const geometry::Solids<D>& solids, const Index<D>& I) const;
-    void add_sealed(const MacState<D>& s, real dt, Grid<real, D>& b) const;
+    void open_films(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t body);
+    real driven_by_solids(const MacState<D>& s, const geometry::Solids<D>& solids, const Index<D>& I) const;
+    void add_films(const MacState<D>& s, real dt, Grid<real, D>& b) const;
     void set_velocities(MacState<D>& s) const;
     void scatter(std::size_t body, const rigid::Twist<D>& velocity, real scale, Grid<real, D>& to) const;
     rigid::Twist<D> push(std::size_t body, const Grid<real, D>& p) const;

@@ -317,7 +317,7 @@ template <int D>
 const poisson::Report& BodiesInFlow<D>::solve(MacState<D>& s, SolidPlacement<D>& placement, real dt, poisson::Solver<D>* solver,
                                               real tolerance, Grid<real, D>* b) {
     find_cuts(s, placement);
-    if (b) add_sealed(s, dt, *b);
+    if (b) add_films(s, dt, *b);
     begin(s, solver != nullptr, dt);
     const bool coupled = std::any_of(bodies_.all().begin(), bodies_.all().end(), [](const Body<D>& body) { return body.wet > 0; });
     coupling_iterations_ = report_.iterations = 0;

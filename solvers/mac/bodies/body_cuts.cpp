@@ -97,7 +97,7 @@ template <int D>
 void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t b) {
     const std::size_t own = solids.count() - bodies_.count() + b;
     const Body<D>& body = bodies_[b];
-    faces_[b].clear(), cuts_[b].clear();
+    faces_[b].clear(), cuts_[b].clear(), sealed_.clear();
     near_.reserve(solids.count());
     const Vec<D> reach = Vec<D>::constant(body.radius) + 3.0 * h_;          // of the faces that are searched
     solids.find_near({body.at - reach, body.at + reach}, norm(h_), near_);  // every solid that cuts such a face is within this distance
@@ -132,108 +132,7 @@ void BodiesInFlow<D>::find_faces(const MacState<D>& s, const geometry::Solids<D>
                 if (part[i] != 1) see(I);
         });
     }
-    if (!sealed_.empty()) pass_on_sealed(s, solids, b);
-}
-
-/// Returns whether a closed cell lies between the body and something else: it has a face on a wall, or one that another solid closes.
-template <int D>
-bool BodiesInFlow<D>::is_sealed(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t own, const Index<D>& I) const {
-    for (int a = 0; a < D; ++a)
-        for (const int end : {0, 1}) {
-            const Index<D> F = end == 0 ? I : I + e<D>(a);
-            const bool on_side = F[a] == 0 || F[a] == s.u.cells[a];
-            if (on_side && !s.sides.open(a, end)) return true;
-            if (near_.size() > 1 && solids.nearest(s.u.face_centre(a, F), near_) != own) return true;
-        }
-    return false;
-}
-
-/// What solids other than bodies drive out of a closed cell [m^D/s].
-template <int D>
-real BodiesInFlow<D>::told_out(const MacState<D>& s, const geometry::Solids<D>& solids, const Index<D>& I) const {
-    real sum = 0;
-    for (int a = 0; a < D; ++a)
-        for (const int end : {0, 1}) {
-            const Index<D> F = end == 0 ? I : I + e<D>(a);
-            const real v = s.solid.velocity[static_cast<std::size_t>(a)](F);
-            const bool on_side = F[a] == 0 || F[a] == s.u.cells[a];
-            if (v == 0 || on_side || solids.nearest(s.u.face_centre(a, F), near_) >= solids.count() - bodies_.count()) continue;
-            sum += (end == 0 ? -1 : 1) * (1 - s.solid.open[static_cast<std::size_t>(a)](F)) * v * cell_ / h_[a];
-        }
-    return sum;
-}
-
-/// What a body drives out of sealed cells escapes to the open cells around each group of them, in equal parts, and their pressure acts in
-/// it: a film too thin for the grid leaves and enters freely. Otherwise a body that touches a wall would feel the pressure of one side
-/// alone, and in a closed tank that is known up to a constant only.
-template <int D>
-void BodiesInFlow<D>::pass_on_sealed(const MacState<D>& s, const geometry::Solids<D>& solids, std::size_t body) {
-    std::stable_sort(sealed_.begin(), sealed_.end(), [](const Sealed& x, const Sealed& y) { return x.cell < y.cell; });
-    std::vector<std::size_t> group, rim;
-    std::vector<char> seen(sealed_.size(), 0);
-    const auto each_at = [&](std::size_t cell, auto&& f) {
-        for (auto at = std::lower_bound(sealed_.begin(), sealed_.end(), cell, [](const Sealed&x, std::size_t c) { return x.cell < c; });
-             at != sealed_.end() && at->cell == cell; ++at)
-            f(static_cast<std::size_t>(at - sealed_.begin()));
-    };
-    for (std::size_t first = 0; first < sealed_.size(); ++first) {
-        if (seen[first]) continue;
-        Twist<D> out{};
-        real told = 0;
-        group.assign(1, sealed_[first].cell), rim.clear();
-        for (std::size_t i = 0; i < group.size(); ++i) {
-            each_at(group[i], [&](std::size_t at) {
-                for (std::size_t k = 0; k < n && !seen[at]; ++k) out[k] += sealed_[at].out[k];
-                seen[at] = 1;
-            });
-            const Index<D> I = index_of<D>(s.extent(), group[i]);
-            told += told_out(s, solids, I);
-            for (int a = 0; a < D; ++a)
-                for (const int way : {-1, 1}) {
-                    Index<D> J = I;
-                    J[a] += way;
-                    if (J[a] < 0 || J[a] >= s.u.cells[a]) continue;
-                    const std::size_t cell = s.cells.linear(J);
-                    if (s.cells[cell] == Cell::fluid) rim.push_back(cell);
-                    bool fresh = false;
-                    each_at(cell, [&](std::size_t at) { fresh |= !seen[at]; });
-                    if (fresh && std::find(group.begin(), group.end(), cell) == group.end()) group.push_back(cell);
-                }
-        }
-        std::sort(rim.begin(), rim.end());
-        rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
-        for (const std::size_t cell : rim) {
-            cut(cell, body).told += told / static_cast<real>(rim.size());
-            for (std::size_t k = 0; k < n; ++k) {
-                const real part = out[k] / static_cast<real>(rim.size());
-                Cut& c = cut(cell, body);
-                c.out[k] += part, c.passed[k] += part;
-            }
-        }
-    }
-    sealed_.clear();
-}
-
-/// What the present velocities, and other solids, drive out of sealed cells is not in the divergence of the grid.
-template <int D>
-void BodiesInFlow<D>::add_sealed(const MacState<D>& s, real dt, Grid<real, D>& b) const {
-    for (std::size_t i = 0; i < bodies_.count(); ++i)
-        for (const Cut& c : cuts_[i]) {
-            if (c.told != 0) b[c.cell] -= h2_ * s.rho / (dt * cell_) * c.told;
-            for (std::size_t k = 0; k < n; ++k)
-                if (c.passed[k] != 0) b[c.cell] -= h2_ * s.rho / (dt * cell_) * c.passed[k] * bodies_[i].velocity[k];
-        }
-}
-
-template <int D>
-real BodiesInFlow<D>::flux_in_films() const {
-    real sum = 0;
-    for (std::size_t i = 0; i < bodies_.count(); ++i)
-        for (const Cut& c : cuts_[i]) {
-            sum += std::abs(c.told);
-            for (std::size_t k = 0; k < n; ++k) sum += std::abs(c.passed[k] * bodies_[i].velocity[k]);
-        }
-    return sum;
+    if (!sealed_.empty()) open_films(s, solids, b);
 }
 
 template <int D>

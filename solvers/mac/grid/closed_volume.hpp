@@ -38,7 +38,7 @@ template <int D>
 void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence);
 
 /// Throws NumericalFailure where free bodies close off a region and a step dt changes its volume by more than a thousandth: the pressure of
-/// such a region is known up to a constant, and does not hold them. `in_films`: what they drive through films of sealed cells [m^D/s].
+/// such a region is known up to a constant, and does not hold them. `in_films`: what they drive through films too thin for the grid [m^D/s].
 template <int D>
 void require_room_of_bodies(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence, real dt, real in_films);
 

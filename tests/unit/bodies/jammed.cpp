@@ -114,16 +114,7 @@ TEST("a body beyond a wall is jammed where its deepest point moves further out, 
 
 // The box crosses 5 of its 20 cells in a step, strikes the ball and the wall, and overlaps the wall by 0.2 of its radius.
 TEST("bodies that strike each other and a wall, turning by large angles in a step, overlap it, are separated, and end inside") {
-    const scene::Scene scene = scene_of(R"(solver = "mac"
-dim = 3
-grid = { cells = [20, 16, 12], size = [1.0, 0.8, 0.6] }
-time = { end = 1.0 }
-fluid = { density = 1000.0 }
-effects = { gravity = { g = [0.0, -9.81, 0.0] } }
-solids = [ { shape = "box", min = [-0.1, -0.1, -0.1], max = [1.1, 0.11, 0.7] } ]
-bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], density = 300.0, spin = [1.0, 5.0, 2.0], velocity = [25.0, 0.0, 0.5] },
-           { shape = "sphere", centre = [0.75, 0.5, 0.3], radius = 0.1, density = 500.0 } ]
-)");
+    const scene::Scene scene = scene_of(box_that_strikes());
     auto bodies = mac::BodiesInFlow<3>::make(scene);
     mac::MacState<3> state(scene, {});
     mac::SolidPlacement<3> placement(mac::BodiesInFlow<3>::solids(scene, bodies.get()), state);

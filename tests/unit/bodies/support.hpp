@@ -33,6 +33,20 @@ inline real shown(const Solver& solver, const char* field, std::size_t component
     return set.find(rigid::body_set_name, field)->data[component][body];
 }
 
+/// A box that crosses five cells in a step towards a ball and a wall, over a floor; `more`: further bodies.
+inline std::string box_that_strikes(const std::string& more = "") {
+    return R"(solver = "mac"
+dim = 3
+grid = { cells = [20, 16, 12], size = [1.0, 0.8, 0.6] }
+time = { end = 1.0 }
+fluid = { density = 1000.0 }
+effects = { gravity = { g = [0.0, -9.81, 0.0] } }
+solids = [ { shape = "box", min = [-0.1, -0.1, -0.1], max = [1.1, 0.11, 0.7] } ]
+bodies = [ { shape = "box", min = [0.1, 0.3, 0.1], max = [0.3, 0.45, 0.3], density = 300.0, spin = [1.0, 5.0, 2.0], velocity = [25.0, 0.0, 0.5] },
+           { shape = "sphere", centre = [0.75, 0.5, 0.3], radius = 0.1, density = 500.0 })" +
+           more + " ]\n";
+}
+
 /// A box on a box in the water, and a ball that spins near the floor.
 inline std::string bodies_that_touch(real ball) {
     return fmt::format(

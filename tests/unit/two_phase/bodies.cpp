@@ -11,23 +11,10 @@ using two_phase::TwoPhase;
 
 namespace {
 
-/// A closed tank of 1 m by 1 m (by 0.75 m), 1000:1, with liquid up to y = `level` and the given bodies.
+/// A closed tank with liquid up to y = `level` and the given bodies.
 template <int D>
 std::string tank(const std::string& bodies, const std::string& level, const std::string& more = "") {
-    return fmt::format(R"(solver = "two_phase"
-dim = {}
-grid = {{ cells = {}, size = {} }}
-time = {{ end = 10.0 }}
-fluid = {{ density = 1000.0 }}
-gas = {{ density = 1.0 }}
-liquid = [ {{ shape = "box", min = {}, max = {} }} ]
-bodies = [ {} ]
-effects = {{ gravity = {{ g = {} }} }}
-scheme = {{ poisson = {{ tolerance = 1e-10 }} }}
-{}
-)",
-                       D, list({"32", "32", "24"}, D), list({"1.0", "1.0", "0.75"}, D), list({"-1.0", "-1.0", "-1.0"}, D),
-                       list({"2.0", level, "2.0"}, D), bodies, list({"0.0", "-9.81", "0.0"}, D), more);
+    return test::tank<D>(32, up_to<D>(level), "bodies = [ " + bodies + " ]\n" + more);
 }
 
 template <int D>
@@ -41,9 +28,7 @@ template <int D>
 Vec<D> of_body(const TwoPhase<D>& solver, const std::string& name) {
     Vec<D> value;
     const FieldSet set = solver.fields();
-    for (const auto& field : set.fields)
-        if (field.name == name && field.set == rigid::body_set_name)
-            for (int a = 0; a < D; ++a) value[a] = field.data[static_cast<std::size_t>(a)][0];
+    for (int a = 0; a < D; ++a) value[a] = set.find(rigid::body_set_name, name)->data[static_cast<std::size_t>(a)][0];
     return value;
 }
 

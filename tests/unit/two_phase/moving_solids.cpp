@@ -11,23 +11,10 @@ using two_phase::TwoPhase;
 
 namespace {
 
-/// A tank of 1 m by 1 m (by 0.75 m), 1000:1, with liquid up to y = 0.47 m and the given solids.
+/// A tank with liquid up to y = 0.47 m and the given solids.
 template <int D>
 std::string tank(const std::string& solids, const std::string& more = "") {
-    return fmt::format(R"(solver = "two_phase"
-dim = {}
-grid = {{ cells = {}, size = {} }}
-time = {{ end = 10.0 }}
-fluid = {{ density = 1000.0 }}
-gas = {{ density = 1.0 }}
-liquid = [ {{ shape = "box", min = {}, max = {} }} ]
-solids = [ {} ]
-effects = {{ gravity = {{ g = {} }} }}
-scheme = {{ poisson = {{ tolerance = 1e-10 }} }}
-{}
-)",
-                       D, list({"24", "24", "18"}, D), list({"1.0", "1.0", "0.75"}, D), list({"-1.0", "-1.0", "-1.0"}, D),
-                       list({"2.0", "0.47", "2.0"}, D), solids, list({"0.0", "-9.81", "0.0"}, D), more);
+    return test::tank<D>(24, up_to<D>("0.47"), "solids = [ " + solids + " ]\n" + more);
 }
 
 template <int D>

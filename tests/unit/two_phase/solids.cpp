@@ -9,28 +9,10 @@ using two_phase::TwoPhase;
 
 namespace {
 
-/// A tank of 1 m by 1 m (by 0.75 m), 1000:1, filled up to `level` along y, with a ball as solid. Without friction and tension.
+/// A tank with a ball as solid.
 template <int D>
 std::string pond(const std::string& centre, const std::string& liquid, const std::string& more = "") {
-    return fmt::format(R"(solver = "two_phase"
-dim = {}
-grid = {{ cells = {}, size = {} }}
-time = {{ end = 10.0 }}
-fluid = {{ density = 1000.0 }}
-gas = {{ density = 1.0 }}
-liquid = [ {} ]
-solids = [ {{ shape = "sphere", centre = {}, radius = 0.2 }} ]
-effects = {{ gravity = {{ g = {} }} }}
-scheme = {{ poisson = {{ tolerance = 1e-10 }} }}
-{}
-)",
-                       D, list({"24", "24", "18"}, D), list({"1.0", "1.0", "0.75"}, D), liquid, centre, list({"0.0", "-9.81", "0.0"}, D),
-                       more);
-}
-
-template <int D>
-std::string box(const std::vector<std::string>& min, const std::vector<std::string>& max) {
-    return "{ shape = \"box\", min = " + list(min, D) + ", max = " + list(max, D) + " }";
+    return tank<D>(24, liquid, "solids = [ { shape = \"sphere\", centre = " + centre + ", radius = 0.2 } ]\n" + more);
 }
 
 template <int D>

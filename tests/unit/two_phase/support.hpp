@@ -23,6 +23,36 @@ inline std::string list(std::vector<std::string> entries, int dim) {
     return text + "]";
 }
 
+template <int D>
+std::string box(const std::vector<std::string>& min, const std::vector<std::string>& max) {
+    return "{ shape = \"box\", min = " + list(min, D) + ", max = " + list(max, D) + " }";
+}
+
+/// A tank of 1 m by 1 m (by 0.75 m), 1000:1, with gravity and n cells along x and y, without friction and tension. `liquid`: its shapes;
+/// `more`: further lines.
+template <int D>
+std::string tank(int n, const std::string& liquid, const std::string& more) {
+    const std::string along = std::to_string(n), across = std::to_string(3 * n / 4);
+    return fmt::format(R"(solver = "two_phase"
+dim = {}
+grid = {{ cells = {}, size = {} }}
+time = {{ end = 10.0 }}
+fluid = {{ density = 1000.0 }}
+gas = {{ density = 1.0 }}
+liquid = [ {} ]
+effects = {{ gravity = {{ g = {} }} }}
+scheme = {{ poisson = {{ tolerance = 1e-10 }} }}
+{}
+)",
+                       D, list({along, along, across}, D), list({"1.0", "1.0", "0.75"}, D), liquid, list({"0.0", "-9.81", "0.0"}, D), more);
+}
+
+/// The liquid of a tank up to a level [m].
+template <int D>
+std::string up_to(const std::string& level) {
+    return box<D>({"-1.0", "-1.0", "-1.0"}, {"2.0", level, "2.0"});
+}
+
 /// A tank of 1 m by 1 m (by 0.75 m), 1000:1, with a column of liquid in its lower left corner. Viscosities and tension are so large that
 /// each of them matters within a few steps.
 template <int D>
