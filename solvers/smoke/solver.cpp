@@ -140,7 +140,7 @@ StepReport FlowSolver<D>::report(real dt) {
     if (!std::isfinite(fastest)) throw NumericalFailure("velocity", "the velocity is not finite");
     if (own().distributed()) check_own_planes();
     const real divergence = max_divergence(state_);
-    require_room(state_, solids_, divergence);
+    require_room(state_, solids_, divergence, dt);
     return {.dt = dt,
             .cfl = dt * fastest,
             .max_divergence = divergence,

@@ -25,7 +25,7 @@ StepReport TallCells<D>::step(real dt) {
     forces(kick);                                   // u += dt f
     const poisson::Report poisson = project(kick);  // u −= (dt/ρ) ∇p,  ∇·u = 0 on every cell of the lattice
     const real divergence = pressure_.max_divergence(state_);
-    mac::require_room(state_, solids_, divergence);
+    mac::require_room(state_, solids_, divergence, dt);
     extend_velocity();  // ∇u·∇φ = 0 beyond the liquid
     leapfrog_.finish(state_.u, kick);
     if (!std::isfinite(rate_)) throw NumericalFailure("velocity", "a velocity is no longer finite");

@@ -27,8 +27,7 @@ StepReport TwoPhase<D>::step(real dt) {
     const poisson::Report poisson =
         mac::explained_by_room(state_, solids_, [&] { return project(dt, bodies_.get()); });  // u −= dt ∇p / ρ_a,  ∇·u = 0
     const real divergence = max_divergence(state_);
-    mac::require_room(state_, solids_, divergence);
-    if (bodies_) mac::require_room_of_bodies(state_, solids_, divergence, dt, bodies_->flux_in_films());
+    mac::require_room(state_, solids_, divergence, dt, bodies_ ? std::optional(bodies_->flux_in_films()) : std::nullopt);
     find_rate();
     check();
     ++steps_;

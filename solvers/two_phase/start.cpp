@@ -145,7 +145,7 @@ void TwoPhase<D>::place_solids(const scene::Scene& scene) {
                     "solver \"two_phase\" has no friction on bodies, so it does not support viscosity together with slip = \"no\" on them",
                     "without viscosity, or with slip = \"free\" on all bodies");
     see_solids();
-    if (solids_.moving()) require_room(scene);
+    if (solids_.moving() && !bodies_) require_room(scene);  // bodies yield to solids: each step tells
 }
 
 template <int D>

@@ -195,10 +195,10 @@ const poisson::Report& SurfacePressure<D>::solve(MacState<D>& state) {
 /// Where solids change the volume of liquid and incompressible air without outflow, no pressure can balance it
 /// (mac/grid/closed_volume.hpp). `cells`: those of the state, with pockets of air as fluid.
 template <int D>
-static void require_room(MacState<D>& state, Grid<Cell, D>& cells, const SolidPlacement<D>& solids, real divergence) {
+static void require_room(MacState<D>& state, Grid<Cell, D>& cells, const SolidPlacement<D>& solids, real divergence, real dt) {
     std::swap(state.cells, cells);
     try {
-        mac::require_room(state, solids, divergence);
+        mac::require_room(state, solids, divergence, dt);
     } catch (...) {
         std::swap(state.cells, cells);
         throw;
@@ -225,7 +225,7 @@ const poisson::Report& SurfacePressure<D>::project(MacState<D>& state, const Lev
         bodies ? bodies->solve(state, *solids, dt, solver_.get(), tolerance_, &b_) : solve(state);
     set_pressure_level(state);
     subtract(state, surface, dt, sigma, curvature, state.u.face);
-    if (pockets_ && !pockets_->law() && solids) require_room(state, A_.cells, *solids, max_divergence(state));
+    if (pockets_ && !pockets_->law() && solids) require_room(state, A_.cells, *solids, max_divergence(state), dt);
     return report;
 }
 

@@ -27,7 +27,7 @@ StepReport Water<D>::step(real dt) {
     const poisson::Report poisson = project(dt, kick);  // u = u* − (dt/ρ) ∇p,  ∇·u = 0,  p = σ κ on the surface
     pressure_.keep_gas_velocity(state_);
     const real divergence = pressure_.max_divergence(state_);
-    mac::require_room(state_, solids_, divergence);
+    mac::require_room(state_, solids_, divergence, dt);
     extend_velocity(dt);  // ∇u·∇φ = 0 beyond the liquid
     momentum_to_markers(dt);
     leapfrog_.finish(state_.u, kick);

@@ -7,6 +7,7 @@
 #include "mac/bodies/solid_faces.hpp"
 #include "mac/grid/state.hpp"
 
+#include <optional>
 #include <string>
 
 namespace weir::mac {
@@ -15,6 +16,7 @@ namespace weir::mac {
 template <int D>
 struct Squeezed {
     real growth = 0, volume = 0;  // [m^D/s], [m^D]
+    real all = 0;                 // volume of all fluid [m^D]
     std::size_t cells = 0, solid = 0;
     Vec<D> middle{};
     bool any() const { return cells > 0; }
@@ -33,14 +35,12 @@ std::string text_of(const Squeezed<D>& region);
 template <int D>
 bool move_as_prescribed(const geometry::Solids<D>& solids);
 
-/// Throws NumericalFailure where there is such a region and a step has left a `divergence` [1/s] that it may have caused.
+/// Throws NumericalFailure where there is such a region and a step dt has left a `divergence` [1/s] that it may have caused. The pressure
+/// of a region that free bodies close off is known up to a constant and does not hold them: what they change of it is at most a thousandth
+/// of all fluid in a step. `in_films`: what bodies and solids drive through films too thin for the grid, which is not lost [m^D/s];
+/// nullopt: the solver has none, and heaps of bodies squeeze its pockets, so free bodies are not asked.
 template <int D>
-void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence);
-
-/// Throws NumericalFailure where free bodies close off a region and a step dt changes its volume by more than a thousandth: the pressure of
-/// such a region is known up to a constant, and does not hold them. `in_films`: what they drive through films too thin for the grid [m^D/s].
-template <int D>
-void require_room_of_bodies(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence, real dt, real in_films);
+void require_room(const MacState<D>& s, const SolidPlacement<D>& solids, real divergence, real dt, std::optional<real> in_films = {});
 
 /// Returns f(); where it fails because of such a region, the failure says so.
 template <int D, class F>
@@ -48,7 +48,7 @@ decltype(auto) explained_by_room(const MacState<D>& s, const SolidPlacement<D>& 
     try {
         return f();
     } catch (const NumericalFailure&) {
-        require_room(s, solids, infinity);
+        require_room(s, solids, infinity, infinity);
         throw;
     }
 }
